@@ -1,0 +1,26 @@
+// Files as wholes: read, and written so that a reader never sees half of one.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trackbed {
+
+/// The bytes of a file. Throws InputError when it cannot be read or is larger than `limit` [bytes].
+std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 40);
+
+/// Writes beside `path` and renames: `path` holds the old text or the new, never a part. Throws RunError.
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Makes a folder and those above it. Throws RunError.
+void make_folder(const std::filesystem::path& path);
+
+/// Files that match a pattern ("stones/*.obj", "*/a?.csv", "[ab].stl"), sorted by name; empty when none does.
+std::vector<std::filesystem::path> expand_pattern(const std::filesystem::path& pattern);
+
+/// Has the path a *, ? or [ ?
+bool is_pattern(const std::filesystem::path& path);
+
+}  // namespace trackbed

@@ -1,0 +1,21 @@
+// Which known word did the user mean?
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace trackbed {
+
+/// Letters to insert, delete, replace or swap with their neighbour to turn one word into the other (optimal
+/// string alignment; Damerau 1964).
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The known words, nearest first; the given order among equals.
+std::vector<std::string> by_distance(std::string_view word, std::vector<std::string> known);
+
+/// "did you mean friction? Known are friction, kn, ks": all known words, nearest first. The question is put
+/// only when the nearest is near.
+std::string known_words(std::string_view word, const std::vector<std::string>& known);
+
+}  // namespace trackbed
