@@ -88,6 +88,9 @@ struct Field {
   bool optional = false;  // has no default: may be absent
 };
 
+/// What is written there: "time [s]", "one of: linear, hertz", "whole number".
+std::string type_of(const Field& field);
+
 /// Value of a field that is not a table, in SI.
 using Value = std::variant<bool, std::int64_t, double, Vec3, std::string, std::filesystem::path,
                            std::vector<double>, std::vector<std::string>, std::vector<std::filesystem::path>>;
