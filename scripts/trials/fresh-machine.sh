@@ -54,7 +54,10 @@ machine=$(cd "$machine" && pwd -P)
 rm -f "$logs"/*.log
 
 # Mounts live in a namespace that ends with its last process (see in_machine); what is left is a plain folder.
+job=
 clean_up() {
+  [[ -z $job ]] || kill -KILL -- "-$job" 2>/dev/null || true
+  wait
   if ((keep)); then
     echo "The machine is kept in $machine"
   else
@@ -107,8 +110,8 @@ in_machine() {
   for setting in http_proxy https_proxy no_proxy; do
     [[ -z ${!setting:-} ]] || settings+=("$setting=${!setting}")
   done
-  timeout --kill-after=10 "${minutes}m" \
-    "${apart[@]}" --root="$machine" --wd="$home" --mount-proc env -i "${settings[@]}" "$@" </dev/null
+  timeout --foreground --signal=KILL "${minutes}m" \
+    "${apart[@]}" --root="$machine" --wd="$home" --mount-proc env -i "${settings[@]}" "$@"
 }
 
 # try NAME COMMAND...: runs it with its output in NAME.log, and adds a row for it and for each part it tells of.
@@ -116,12 +119,17 @@ try() {
   local name=$1 start=$SECONDS status=0 result=passed
   shift
   echo "$name: $* ..."
-  "$@" >"$logs/$name.log" 2>&1 || status=$?
+  set -m # a process group of its own, which clean_up can end
+  "$@" >"$logs/$name.log" 2>&1 </dev/null &
+  job=$!
+  set +m
+  wait "$job" || status=$?
+  job=
   while read -r part seconds; do row "" "$part" "$seconds"; done \
     < <(sed -n 's/^== \([a-z]*\): \([0-9]*\) s$/\1 \2/p' "$logs/$name.log")
   if ((status)); then
     result="FAILED ($status)"
-    ((status == 124)) && result="OUT OF TIME"
+    ((status == 137)) && result="OUT OF TIME"
     echo "--- the end of $logs/$name.log:"
     tail -n 25 "$logs/$name.log"
     echo "---"
