@@ -1,0 +1,18 @@
+// Forces of all contacts at the present positions, and their sums on stones and walls.
+#pragma once
+
+#include "dem/model.h"
+#include "dem/state.h"
+#include "dem/workspace.h"
+
+namespace trackbed {
+
+/// Refreshes the candidates that are due and lets every touching contact respond, for a step of length dt [s].
+/// One clump pair is summed by one thread, each clump sums its pairs in ascending order of the other: the same
+/// bits for any number of threads.
+void contact_forces(const Model& model, State& state, Workspace& work, double dt);
+
+/// Sums the pairs' results on the stones and walls.
+void gather_forces(const Model& model, State& state, Workspace& work, double dt);
+
+}  // namespace trackbed

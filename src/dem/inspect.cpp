@@ -1,0 +1,134 @@
+#include "dem/inspect.h"
+
+#include <cmath>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "dem/motion.h"
+#include "dem/rotation.h"
+#include "dem/touching.h"
+
+namespace trackbed {
+namespace {
+
+using Index = std::size_t;
+
+[[noreturn]] void fail(const State& state, Index c, const std::string& what) {
+  const Vec3& x = state.clumps.position[c];
+  throw RunError(fmt::format("stone {} at ({:.4g}, {:.4g}, {:.4g}) m, step {}, t = {:.6g} s: {}",
+                             state.clumps.id[c], x.x(), x.y(), x.z(), state.step, state.time, what));
+}
+
+double volume_radius(const Model& model, const Clumps& c, Index i) {
+  const double volume = model.templates[static_cast<Index>(c.shape[i])].volume * std::pow(c.scale[i], 3);
+  return std::cbrt(volume * 3.0 / (4.0 * M_PI));
+}
+
+/// Rate at t of a quantity whose rate is known at t - dt/2, with the damped force of the half step to come.
+Vec3 half_kicked(const Vec3& rate, const Vec3& unbalanced, const Vec3& inertia, double alpha, double half) {
+  return rate + half * damped(unbalanced, rate, alpha).cwiseQuotient(inertia);
+}
+
+double kinetic_energy(const Model& model, const State& state, Index i) {
+  const Clumps& c = state.clumps;
+  const double half = 0.5 * state.dt;
+  const Vec3 v = half_kicked(c.velocity[i], c.force[i] + c.mass[i] * model.gravity, Vec3::Constant(c.mass[i]),
+                             model.local_damping, half);
+  const Mat3 r = c.orientation[i].toRotationMatrix();
+  const Vec3 spin = (r.transpose() * c.angular_momentum[i]).cwiseQuotient(c.inertia[i]);
+  const Vec3 w = half_kicked(spin, r.transpose() * c.moment[i], c.inertia[i], model.local_damping, half);
+  return 0.5 * (c.mass[i] * v.squaredNorm() + c.inertia[i].dot(w.cwiseAbs2()));
+}
+
+double kinetic_energy(const Model& model, const BodyProperties& body, const WallState& wall, double dt) {
+  Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
+  for (int a = 0; a < 3; ++a)
+    if (!body.free_shift[static_cast<Index>(a)]) unbalanced[a] = 0;
+  const Vec3 v =
+      half_kicked(wall.velocity, unbalanced, Vec3::Constant(body.mass), model.local_damping, 0.5 * dt);
+  const Mat3 r = wall.pose.orientation.toRotationMatrix();
+  const Vec3 w = r.transpose() * wall.angular_velocity;
+  return 0.5 * (body.mass * v.squaredNorm() + body.inertia.dot(w.cwiseAbs2()));
+}
+
+}  // namespace
+
+void inspect(const Model& model, const State& state, const Workspace& work) {
+  const Clumps& c = state.clumps;
+  const Limits& limits = model.limits;
+  for (Index i = 0; i < c.id.size(); ++i) {
+    if (!c.position[i].allFinite() || !c.velocity[i].allFinite() || !c.angular_momentum[i].allFinite() ||
+        !c.force[i].allFinite() || !c.moment[i].allFinite())
+      fail(state, i, "a position, velocity or force is not a number: the run has blown up");
+    const double speed = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
+    if (speed > limits.speed)
+      fail(state, i, fmt::format("moves at {:.4g} m/s, above the limit of {:.4g} m/s: the run has blown up", speed,
+                                 limits.speed));
+    if (!limits.domain.isEmpty() && !limits.domain.contains(c.position[i]))
+      fail(state, i, "has left the container");
+  }
+  for (const WallState& wall : state.walls)
+    if (!wall.pose.position.allFinite() || !wall.velocity.allFinite())
+      throw RunError(fmt::format("step {}, t = {:.6g} s: the motion of a wall or body is not a number", state.step,
+                                 state.time));
+  visit_touching(model, state, [&](const Touching& t) {
+    double radius = volume_radius(model, c, static_cast<Index>(t.clump_1));
+    if (t.clump_2 >= 0) radius = std::min(radius, volume_radius(model, c, static_cast<Index>(t.clump_2)));
+    if (t.overlap <= limits.overlap * radius) return;
+    const std::string other =
+        t.clump_2 >= 0 ? fmt::format("stone {}", c.id[static_cast<Index>(t.clump_2)])
+                       : fmt::format("wall {}", model.walls[static_cast<Index>(t.wall)].shape.name);
+    fail(state, static_cast<Index>(t.clump_1),
+         fmt::format("overlaps {} by {:.3g} mm, {:.0f} % of its radius (limit {:.0f} %)", other, 1e3 * t.overlap,
+                     100 * t.overlap / radius, 100 * limits.overlap));
+  });
+}
+
+EnergyBalance energy_of(const Model& model, const State& state) {
+  EnergyBalance e;
+  const Clumps& c = state.clumps;
+  for (Index i = 0; i < c.id.size(); ++i) {
+    e.kinetic += kinetic_energy(model, state, i);
+    e.potential -= c.mass[i] * model.gravity.dot(c.position[i]);
+    e.friction_loss += c.losses[i].friction;
+    e.rolling_loss += c.losses[i].rolling;
+    e.dashpot_loss += c.losses[i].dashpot;
+    e.damping_loss += c.losses[i].damping;
+  }
+  for (Index w = 0; w < state.walls.size(); ++w) {
+    const WallState& wall = state.walls[w];
+    e.boundary_work += wall.boundary_work;
+    e.applied_work += wall.applied_work;
+    e.damping_loss += wall.damping_loss;
+    if (const auto& body = model.walls[w].body) {
+      e.kinetic += kinetic_energy(model, *body, wall, state.dt);
+      e.potential -= body->mass * model.gravity.dot(wall.pose.position);
+    }
+  }
+  visit_touching(model, state, [&](const Touching& t) {
+    const ContactProperties& p = *t.properties;
+    e.strain += 0.5 * p.kn * t.overlap * t.overlap;
+    if (p.ks <= 0) return;
+    e.strain += t.memory->shear.squaredNorm() / (2.0 * p.ks);
+    if (p.law == LawKind::linear_rolling)
+      e.strain += t.memory->rolling.squaredNorm() / (2.0 * LinearRolling::rolling_stiffness(p, t.radius));
+  });
+  return e;
+}
+
+double unbalanced_ratio(const Model& model, const State& state) {
+  const Clumps& c = state.clumps;
+  double unbalanced = 0, all = 0;
+  for (Index i = 0; i < c.id.size(); ++i) {
+    const Vec3 weight = c.mass[i] * model.gravity;
+    unbalanced += (c.force[i] + weight).norm();
+    all += weight.norm();
+  }
+  // Every contact between stones acts on two of them.
+  visit_touching(model, state, [&](const Touching& t) { all += (t.clump_2 >= 0 ? 2.0 : 1.0) * t.force().norm(); });
+  return all > 0 ? unbalanced / all : 0.0;
+}
+
+}  // namespace trackbed

@@ -1,0 +1,303 @@
+// Level one of the search: which stones, and which stones and walls, lie near each other.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "dem/search.h"
+
+namespace trackbed {
+namespace {
+
+using Index = std::size_t;
+
+/// Stones sorted into cubic cells; a stone's neighbours lie in its own and the 26 cells around it.
+struct Grid {
+  Vec3 origin;
+  double cell;
+  std::array<int, 3> n;
+  std::vector<int> first, members;
+
+  std::array<int, 3> place(const Vec3& p) const {
+    std::array<int, 3> at;
+    for (int a = 0; a < 3; ++a) {
+      const Index k = static_cast<Index>(a);
+      at[k] = std::clamp(static_cast<int>((p[a] - origin[a]) / cell), 0, n[k] - 1);
+    }
+    return at;
+  }
+  int number(int x, int y, int z) const { return (z * n[1] + y) * n[0] + x; }
+};
+
+Grid make_grid(const std::vector<Vec3>& positions, double cell) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : positions) box.extend(p);
+  Grid grid{box.min(), cell, {}, {}, {}};
+  // Few stones in a wide space: larger cells, rather than more of them than memory holds.
+  const double most = 8.0 * static_cast<double>(positions.size()) + 64.0;
+  for (;;) {
+    const Vec3 cells = (box.sizes() / grid.cell).array().floor() + 1.0;
+    if (cells.prod() <= most) {
+      for (int a = 0; a < 3; ++a) grid.n[static_cast<Index>(a)] = static_cast<int>(cells[a]);
+      break;
+    }
+    grid.cell *= 1.5;
+  }
+  std::vector<int> cell_of(positions.size());
+  grid.first.assign(static_cast<Index>(grid.n[0] * grid.n[1] * grid.n[2]) + 1, 0);
+  for (Index c = 0; c < positions.size(); ++c) {
+    const auto at = grid.place(positions[c]);
+    cell_of[c] = grid.number(at[0], at[1], at[2]);
+    ++grid.first[static_cast<Index>(cell_of[c]) + 1];
+  }
+  std::partial_sum(grid.first.begin(), grid.first.end(), grid.first.begin());
+  grid.members.resize(positions.size());
+  std::vector<int> next(grid.first.begin(), grid.first.end() - 1);
+  for (Index c = 0; c < positions.size(); ++c)
+    grid.members[static_cast<Index>(next[static_cast<Index>(cell_of[c])]++)] = static_cast<int>(c);
+  return grid;
+}
+
+/// All (i, j), i < j, with less than the margin between their bounding spheres, ascending.
+std::vector<std::pair<int, int>> near_clumps(const Clumps& clumps, const Workspace& work) {
+  std::vector<std::pair<int, int>> pairs;
+  if (clumps.size() < 2) return pairs;
+  const double largest = *std::max_element(work.bound.begin(), work.bound.end());
+  const Grid grid = make_grid(clumps.position, 2.0 * largest + work.margin);
+  std::vector<int> others;
+  for (int i = 0; i < clumps.size(); ++i) {
+    const Vec3& x = clumps.position[static_cast<Index>(i)];
+    const auto at = grid.place(x);
+    others.clear();
+    for (int z = std::max(at[2] - 1, 0); z <= std::min(at[2] + 1, grid.n[2] - 1); ++z)
+      for (int y = std::max(at[1] - 1, 0); y <= std::min(at[1] + 1, grid.n[1] - 1); ++y) {
+        const int left = grid.number(std::max(at[0] - 1, 0), y, z);
+        const int right = grid.number(std::min(at[0] + 1, grid.n[0] - 1), y, z);
+        const int last = grid.first[static_cast<Index>(right) + 1];
+        for (int k = grid.first[static_cast<Index>(left)]; k < last; ++k) {
+          const int j = grid.members[static_cast<Index>(k)];
+          if (j <= i) continue;
+          const double near =
+              work.bound[static_cast<Index>(i)] + work.bound[static_cast<Index>(j)] + work.margin;
+          if ((clumps.position[static_cast<Index>(j)] - x).squaredNorm() < near * near) others.push_back(j);
+        }
+      }
+    std::sort(others.begin(), others.end());
+    for (int j : others) pairs.emplace_back(i, j);
+  }
+  return pairs;
+}
+
+bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
+  if (shape.is_plane) return centre.z() < radius;
+  std::array<int, 64> stack;
+  int top = 0;
+  stack[static_cast<Index>(top++)] = 0;
+  while (top > 0) {
+    const int k = stack[static_cast<Index>(--top)];
+    const SphereTree::Node& node = shape.tree.nodes[static_cast<Index>(k)];
+    const double near = node.bound.radius + radius;
+    if ((node.bound.centre - centre).squaredNorm() >= near * near) continue;
+    if (!node.is_leaf()) {
+      stack[static_cast<Index>(top++)] = node.right;
+      stack[static_cast<Index>(top++)] = k + 1;
+      continue;
+    }
+    for (int f = node.first; f < node.first + node.count; ++f) {
+      const Facet& facet = shape.facets[static_cast<Index>(f)];
+      if ((closest_point(facet, centre) - centre).squaredNorm() < radius * radius) return true;
+    }
+  }
+  return false;
+}
+
+/// All (wall, clump) with less than the margin between the wall and the bounding sphere, ascending.
+std::vector<std::pair<int, int>> near_walls(const Model& model, const State& state, const Workspace& work) {
+  std::vector<std::pair<int, int>> pairs;
+  for (Index w = 0; w < model.walls.size(); ++w)
+    for (int c = 0; c < state.clumps.size(); ++c) {
+      const Vec3 centre = state.walls[w].pose.to_body(state.clumps.position[static_cast<Index>(c)]);
+      if (is_near(model.walls[w].shape, centre, work.bound[static_cast<Index>(c)] + work.margin))
+        pairs.emplace_back(static_cast<int>(w), c);
+    }
+  return pairs;
+}
+
+/// Copies the candidates of one old clump pair behind those of a new one.
+void carry(const PairBlock& from, const PairGeometry& from_geometry, Index pair, bool with_search,
+           PairBlock& to, PairGeometry& to_geometry) {
+  const ClumpPair& old = from.pairs[pair];
+  ClumpPair& now = to.pairs.back();
+  now.count = old.count;
+  const auto first = old.first, last = old.first + old.count;
+  to.keys.insert(to.keys.end(), from.keys.begin() + first, from.keys.begin() + last);
+  to.memory.insert(to.memory.end(), from.memory.begin() + first, from.memory.begin() + last);
+  const auto& columns = from_geometry.columns_of_pairs;
+  if (with_search) {
+    to_geometry.search.back() = from_geometry.search[pair];
+    to_geometry.columns_of_pairs.insert(to_geometry.columns_of_pairs.end(),
+                                        columns.begin() + first * PairGeometry::columns,
+                                        columns.begin() + last * PairGeometry::columns);
+  } else {
+    to_geometry.columns_of_pairs.resize(to.keys.size() * PairGeometry::columns);
+  }
+}
+
+void rebuild_clump_pairs(State& state, Workspace& work) {
+  const auto near = near_clumps(state.clumps, work);
+  std::vector<PairBlock> blocks;
+  std::vector<PairGeometry> geometry;
+  const bool with_search = work.pair_geometry.size() == state.pair_blocks.size();
+  Index old_block = 0, old_pair = 0;
+  for (const auto& [i, j] : near) {
+    if (blocks.empty() || blocks.back().pairs.size() == PairBlock::capacity) {
+      blocks.emplace_back();
+      geometry.emplace_back();
+    }
+    blocks.back().pairs.push_back({i, j, static_cast<int>(blocks.back().keys.size()), 0});
+    geometry.back().search.emplace_back();
+    // Both lists ascend: walk the old one up to this pair.
+    while (old_block < state.pair_blocks.size()) {
+      const auto& pairs = state.pair_blocks[old_block].pairs;
+      if (old_pair == pairs.size()) {
+        ++old_block;
+        old_pair = 0;
+      } else if (std::pair(pairs[old_pair].i, pairs[old_pair].j) < std::pair(i, j)) {
+        ++old_pair;
+      } else {
+        break;
+      }
+    }
+    if (old_block == state.pair_blocks.size()) continue;
+    const PairBlock& old = state.pair_blocks[old_block];
+    if (old.pairs[old_pair].i != i || old.pairs[old_pair].j != j) continue;
+    static const PairGeometry none;
+    carry(old, with_search ? work.pair_geometry[old_block] : none, old_pair, with_search, blocks.back(),
+          geometry.back());
+  }
+  state.pair_blocks = std::move(blocks);
+  work.pair_geometry = std::move(geometry);
+  work.pair_results.assign(near.size(), {});
+
+  // Each clump's pairs in ascending order of the other stone: first those where it is j.
+  const Index n = static_cast<Index>(state.clumps.size());
+  work.first_entry.assign(n + 1, 0);
+  for (const auto& [i, j] : near) {
+    ++work.first_entry[static_cast<Index>(i) + 1];
+    ++work.first_entry[static_cast<Index>(j) + 1];
+  }
+  std::partial_sum(work.first_entry.begin(), work.first_entry.end(), work.first_entry.begin());
+  work.entries.resize(2 * near.size());
+  std::vector<int> next(work.first_entry.begin(), work.first_entry.end() - 1);
+  for (Index p = 0; p < near.size(); ++p)
+    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(2 * p + 1);
+  for (Index p = 0; p < near.size(); ++p)
+    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].first)]++)] = static_cast<int>(2 * p);
+}
+
+void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
+  const auto near = near_walls(model, state, work);
+  std::vector<WallBlock> blocks;
+  Index old_block = 0, old_pair = 0;
+  for (const auto& [wall, clump] : near) {
+    if (blocks.empty() || blocks.back().pairs.size() == WallBlock::capacity) blocks.emplace_back();
+    WallBlock& block = blocks.back();
+    block.pairs.push_back({clump, wall, static_cast<int>(block.keys.size()), 0});
+    while (old_block < state.wall_blocks.size()) {
+      const auto& pairs = state.wall_blocks[old_block].pairs;
+      if (old_pair == pairs.size()) {
+        ++old_block;
+        old_pair = 0;
+      } else if (std::pair(pairs[old_pair].wall, pairs[old_pair].clump) < std::pair(wall, clump)) {
+        ++old_pair;
+      } else {
+        break;
+      }
+    }
+    if (old_block == state.wall_blocks.size()) continue;
+    const WallBlock& old = state.wall_blocks[old_block];
+    const WallPair& from = old.pairs[old_pair];
+    if (from.wall != wall || from.clump != clump) continue;
+    block.pairs.back().count = from.count;
+    block.keys.insert(block.keys.end(), old.keys.begin() + from.first,
+                      old.keys.begin() + from.first + from.count);
+    block.memory.insert(block.memory.end(), old.memory.begin() + from.first,
+                        old.memory.begin() + from.first + from.count);
+  }
+  state.wall_blocks = std::move(blocks);
+  work.wall_results.assign(near.size(), {});
+  // Candidates against walls are looked for anew: there are few, and their facet lists are not worth carrying.
+  work.wall_geometry.assign(state.wall_blocks.size(), {});
+  for (Index b = 0; b < state.wall_blocks.size(); ++b) {
+    work.wall_geometry[b].search.resize(state.wall_blocks[b].pairs.size());
+    work.wall_geometry[b].candidates.resize(state.wall_blocks[b].keys.size());
+  }
+
+  const Index n = static_cast<Index>(state.clumps.size());
+  work.first_wall_entry.assign(n + 1, 0);
+  work.first_pair_of_wall.assign(model.walls.size() + 1, 0);
+  for (const auto& [wall, clump] : near) {
+    ++work.first_wall_entry[static_cast<Index>(clump) + 1];
+    ++work.first_pair_of_wall[static_cast<Index>(wall) + 1];
+  }
+  std::partial_sum(work.first_wall_entry.begin(), work.first_wall_entry.end(), work.first_wall_entry.begin());
+  std::partial_sum(work.first_pair_of_wall.begin(), work.first_pair_of_wall.end(),
+                   work.first_pair_of_wall.begin());
+  work.wall_entries.resize(near.size());
+  std::vector<int> next(work.first_wall_entry.begin(), work.first_wall_entry.end() - 1);
+  for (Index p = 0; p < near.size(); ++p)
+    work.wall_entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(p);
+}
+
+/// Skin and margin that suit the stones, where the user gave none; docs/numerics.md.
+void choose_search(const Model& model, const State& state, Workspace& work) {
+  double sum = 0;
+  for (double b : work.bound) sum += b;
+  const double mean = work.bound.empty() ? 0.02 : sum / static_cast<double>(state.clumps.size());
+  work.skin = model.search.skin > 0 ? model.search.skin : 0.015 * mean;
+  work.margin = model.search.margin > 0 ? model.search.margin : 0.15 * mean;
+  work.margin = std::max(work.margin, work.skin);
+}
+
+}  // namespace
+
+void prepare(const Model& model, const State& state, Workspace& work) {
+  const Index n = static_cast<Index>(state.clumps.size());
+  const bool is_new = work.rotation.size() != n || work.wall_rotation.size() != state.walls.size();
+  if (!is_new && work.pairs_are_valid) return;
+  work.rotation.resize(n);
+  work.bound.resize(n);
+  work.travel.resize(n, 0.0);
+  for (Index c = 0; c < n; ++c) {
+    const Index shape = static_cast<Index>(state.clumps.shape[c]);
+    work.rotation[c] = state.clumps.orientation[c].toRotationMatrix();
+    work.bound[c] = model.templates[shape].bounding_radius * state.clumps.scale[c];
+  }
+  work.wall_rotation.resize(state.walls.size());
+  work.wall_travel.resize(state.walls.size(), 0.0);
+  for (Index w = 0; w < state.walls.size(); ++w)
+    work.wall_rotation[w] = state.walls[w].pose.orientation.toRotationMatrix();
+  work.pairs_are_valid = false;
+}
+
+bool pairs_are_due(const Model&, const State&, const Workspace& work) {
+  if (!work.pairs_are_valid) return true;
+  double wall_shift = 0;
+  for (Index w = 0; w < work.wall_travel.size(); ++w)
+    wall_shift = std::max(wall_shift, work.wall_travel[w] - work.wall_travel_at_build[w]);
+  const double shift = std::sqrt(work.largest_shift2);
+  return 2.0 * shift > work.margin || shift + wall_shift > work.margin;
+}
+
+void rebuild_pairs(const Model& model, State& state, Workspace& work) {
+  choose_search(model, state, work);
+  rebuild_clump_pairs(state, work);
+  rebuild_wall_pairs(model, state, work);
+  work.position_at_build = state.clumps.position;
+  work.wall_travel_at_build = work.wall_travel;
+  work.largest_shift2 = 0;
+  work.pairs_are_valid = true;
+}
+
+}  // namespace trackbed

@@ -1,0 +1,157 @@
+#include "dem/state.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+#include "dem/rotation.h"
+
+namespace trackbed {
+namespace {
+
+using Index = std::size_t;
+
+template <class T>
+void erase_at(std::vector<T>& values, const std::vector<bool>& gone) {
+  Index kept = 0;
+  for (Index k = 0; k < values.size(); ++k)
+    if (!gone[k]) values[kept++] = values[k];
+  values.resize(kept);
+}
+
+template <class Matrix>
+void add(Hash& hash, const Matrix& m) {
+  for (Eigen::Index k = 0; k < m.size(); ++k) hash.add(m.data()[k]);
+}
+
+void add(Hash& hash, const ContactMemory& m) {
+  hash.add(m.overlap);
+  add(hash, m.normal);
+  add(hash, m.shear);
+  add(hash, m.rolling);
+}
+
+}  // namespace
+
+int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose) {
+  const ClumpTemplate& t = model.templates[static_cast<Index>(shape)];
+  const double density = model.materials[static_cast<Index>(material)].density;
+  Clumps& c = state.clumps;
+  c.id.push_back(c.id.empty() ? 0 : *std::max_element(c.id.begin(), c.id.end()) + 1);
+  c.shape.push_back(shape);
+  c.material.push_back(material);
+  c.scale.push_back(scale);
+  c.mass.push_back(density * t.volume * scale * scale * scale);
+  c.inertia.push_back(density * std::pow(scale, 5) * t.inertia);
+  c.position.push_back(pose.position);
+  c.orientation.push_back(pose.orientation);
+  for (auto* zero : {&c.velocity, &c.angular_momentum, &c.angular_velocity, &c.force, &c.moment})
+    zero->push_back(Vec3::Zero());
+  c.losses.emplace_back();
+  return c.size() - 1;
+}
+
+void set_motion(State& state, int clump, const Vec3& velocity, const Vec3& angular_velocity) {
+  const Index i = static_cast<Index>(clump);
+  Clumps& c = state.clumps;
+  const Mat3 r = c.orientation[i].toRotationMatrix();
+  c.velocity[i] = velocity;
+  c.angular_velocity[i] = angular_velocity;
+  c.angular_momentum[i] = r * (r.transpose() * angular_velocity).cwiseProduct(c.inertia[i]);
+}
+
+void rescale(const Model& model, State& state, int clump, double factor) {
+  const Index i = static_cast<Index>(clump);
+  Clumps& c = state.clumps;
+  c.scale[i] *= factor;
+  const ClumpTemplate& t = model.templates[static_cast<Index>(c.shape[i])];
+  const double density = model.materials[static_cast<Index>(c.material[i])].density;
+  c.mass[i] = density * t.volume * std::pow(c.scale[i], 3);
+  c.inertia[i] = density * std::pow(c.scale[i], 5) * t.inertia;
+  set_motion(state, clump, c.velocity[i], c.angular_velocity[i]);
+}
+
+void remove_clumps(State& state, const std::vector<int>& clumps) {
+  Clumps& c = state.clumps;
+  std::vector<bool> gone(c.id.size(), false);
+  for (int k : clumps) gone[static_cast<Index>(k)] = true;
+  std::vector<int> new_index(gone.size());
+  int next = 0;
+  for (Index k = 0; k < gone.size(); ++k) new_index[k] = gone[k] ? -1 : next++;
+
+  for (PairBlock& block : state.pair_blocks) {
+    std::erase_if(block.pairs, [&](const ClumpPair& p) {
+      return gone[static_cast<Index>(p.i)] || gone[static_cast<Index>(p.j)];
+    });
+    for (ClumpPair& p : block.pairs) {
+      p.i = new_index[static_cast<Index>(p.i)];
+      p.j = new_index[static_cast<Index>(p.j)];
+    }
+  }
+  for (WallBlock& block : state.wall_blocks) {
+    std::erase_if(block.pairs, [&](const WallPair& p) { return gone[static_cast<Index>(p.clump)]; });
+    for (WallPair& p : block.pairs) p.clump = new_index[static_cast<Index>(p.clump)];
+  }
+  erase_at(c.id, gone);
+  erase_at(c.shape, gone);
+  erase_at(c.material, gone);
+  erase_at(c.scale, gone);
+  erase_at(c.mass, gone);
+  erase_at(c.inertia, gone);
+  erase_at(c.position, gone);
+  erase_at(c.orientation, gone);
+  erase_at(c.velocity, gone);
+  erase_at(c.angular_momentum, gone);
+  erase_at(c.angular_velocity, gone);
+  erase_at(c.force, gone);
+  erase_at(c.moment, gone);
+  erase_at(c.losses, gone);
+}
+
+std::uint64_t hash(const State& state) {
+  Hash h;
+  const Clumps& c = state.clumps;
+  for (Index i = 0; i < c.id.size(); ++i) {
+    h.add(c.id[i]);
+    h.add(c.shape[i]);
+    h.add(c.material[i]);
+    h.add(c.scale[i]);
+    h.add(c.mass[i]);
+    for (const Vec3* v : {&c.inertia[i], &c.position[i], &c.velocity[i], &c.angular_momentum[i], &c.force[i],
+                          &c.moment[i]})
+      add(h, *v);
+    add(h, c.orientation[i].coeffs());
+    for (double loss : {c.losses[i].friction, c.losses[i].rolling, c.losses[i].dashpot, c.losses[i].damping})
+      h.add(loss);
+  }
+  for (const WallState& w : state.walls) {
+    for (const Vec3* v : {&w.pose.position, &w.velocity, &w.angular_velocity, &w.angular_momentum, &w.force,
+                          &w.moment, &w.applied_force, &w.applied_moment})
+      add(h, *v);
+    add(h, w.pose.orientation.coeffs());
+    for (double work : {w.applied_work, w.boundary_work, w.damping_loss}) h.add(work);
+  }
+  // Candidates out of touch depend on when a search ran, and say nothing.
+  for (const PairBlock& block : state.pair_blocks)
+    for (const ClumpPair& p : block.pairs)
+      for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k) {
+        if (!block.memory[k].touches()) continue;
+        for (int part : {p.i, p.j, block.keys[k].a, block.keys[k].b}) h.add(part);
+        add(h, block.memory[k]);
+      }
+  for (const WallBlock& block : state.wall_blocks)
+    for (const WallPair& p : block.pairs)
+      for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k)
+        for (const ContactMemory& m : block.memory[k].points) {
+          if (!m.touches()) continue;
+          for (int part : {p.wall, p.clump, block.keys[k]}) h.add(part);
+          add(h, m);
+        }
+  h.add(state.time);
+  h.add(state.dt);
+  h.add(state.planned_dt);
+  h.add(state.step);
+  return h.value();
+}
+
+}  // namespace trackbed

@@ -1,0 +1,120 @@
+// All that changes, and nothing that can be worked out again: what a checkpoint holds.
+//
+// Conventions: SI, world axes. Positions, orientations, forces and moments belong to time t; velocities and
+// angular momenta to t - dt/2 (leapfrog), until the first step, when they are those of the start.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+#include "dem/contact.h"
+#include "dem/model.h"
+
+namespace trackbed {
+
+/// Energy each stone has turned into heat since the start [J]; a contact's loss is booked on its body 1.
+struct StoneLosses : Losses {
+  double damping = 0;
+};
+
+/// The stones, one entry a clump in each array.
+struct Clumps {
+  std::vector<int> id;                 // stays with the stone
+  std::vector<int> shape;              // index into Model::templates
+  std::vector<int> material;
+  std::vector<double> scale;           // on the template's lengths
+  std::vector<double> mass;            // [kg]
+  std::vector<Vec3> inertia;           // principal [kg m^2]
+  std::vector<Vec3> position;          // centre of mass [m]
+  std::vector<Quat> orientation;       // principal axes to world
+  std::vector<Vec3> velocity;          // [m/s]
+  std::vector<Vec3> angular_momentum;  // [kg m^2/s]
+  std::vector<Vec3> angular_velocity;  // that goes with it [rad/s]
+  std::vector<Vec3> force;             // of contacts, without gravity [N]
+  std::vector<Vec3> moment;            // about the centre of mass [N m]
+  std::vector<StoneLosses> losses;
+
+  int size() const { return static_cast<int>(id.size()); }
+};
+
+/// Motion and reaction of a wall or body; for a body the frame's origin is its centre of mass.
+struct WallState {
+  Pose pose;
+  Vec3 velocity = Vec3::Zero();          // [m/s]
+  Vec3 angular_velocity = Vec3::Zero();  // about the frame's origin [rad/s]
+  Vec3 angular_momentum = Vec3::Zero();  // bodies only [kg m^2/s]
+  Vec3 force = Vec3::Zero();             // of the stones on the wall [N]
+  Vec3 moment = Vec3::Zero();            // of the stones about the frame's origin [N m]
+  Vec3 applied_force = Vec3::Zero();     // on a body [N]
+  Vec3 applied_moment = Vec3::Zero();    // on a body [N m]
+  double applied_work = 0;               // of the applied force and moment on a body [J]
+  double boundary_work = 0;              // that a moved wall did on the stones [J]
+  double damping_loss = 0;               // bodies [J]
+};
+
+/// Two pebbles of a clump pair, by their place in the templates.
+struct PebblePair {
+  std::int32_t a, b;
+};
+
+/// Clumps i < j that lie near each other; their candidates are [first, first + count) of the block.
+struct ClumpPair {
+  int i, j;
+  int first, count;
+};
+
+/// Consecutive clump pairs that one thread works on at a time. Candidates out of touch have an untouched memory
+/// and mean nothing: which they are depends on when a search ran.
+struct PairBlock {
+  static constexpr int capacity = 16;
+  std::vector<ClumpPair> pairs;
+  std::vector<PebblePair> keys;
+  std::vector<ContactMemory> memory;
+};
+
+/// The places where one pebble touches one wall.
+struct WallMemory {
+  std::array<ContactMemory, max_wall_points> points;
+};
+
+/// A clump near a wall; candidates are pebbles.
+struct WallPair {
+  int clump, wall;
+  int first, count;
+};
+
+struct WallBlock {
+  static constexpr int capacity = 16;
+  std::vector<WallPair> pairs;
+  std::vector<std::int32_t> keys;  // pebble
+  std::vector<WallMemory> memory;
+};
+
+struct State {
+  Clumps clumps;
+  std::vector<WallState> walls;
+  std::vector<PairBlock> pair_blocks;  // pairs ascending by (i, j) through all blocks
+  std::vector<WallBlock> wall_blocks;  // pairs ascending by (wall, clump) through all blocks
+  double time = 0;                     // [s]
+  double dt = 0;                       // of the last step [s]; 0 before the first
+  double planned_dt = 0;               // of the next [s]; 0: to be found
+  std::int64_t step = 0;
+};
+
+/// Adds a stone at rest; returns its index. Mass is density x template volume x scale^3.
+int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose);
+
+/// Sets the velocity [m/s] and angular velocity [rad/s] of a stone.
+void set_motion(State& state, int clump, const Vec3& velocity, const Vec3& angular_velocity);
+
+/// Multiplies a stone's size by `factor` about its centre; mass and inertia follow.
+void rescale(const Model& model, State& state, int clump, double factor);
+
+/// Removes stones (indices ascending) and the memory of their contacts; the others keep their order.
+void remove_clumps(State& state, const std::vector<int>& clumps);
+
+/// Fingerprint of everything that bears on the future: equal only for states that go on alike, bit for bit.
+std::uint64_t hash(const State& state);
+
+}  // namespace trackbed

@@ -1,0 +1,66 @@
+#include "dem/step.h"
+
+#include <chrono>
+
+#include "dem/forces.h"
+#include "dem/inspect.h"
+#include "dem/motion.h"
+#include "dem/search.h"
+#include "dem/timestep.h"
+
+namespace trackbed {
+namespace {
+
+/// Adds the time since the last call to one line of the profile.
+class Stopwatch {
+ public:
+  void add_to(double& seconds) {
+    const auto now = std::chrono::steady_clock::now();
+    seconds += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+void settle_contacts(const Model& model, State& state, Workspace& work) {
+  work = {};
+  prepare(model, state, work);
+  rebuild_pairs(model, state, work);
+  // A step of no length: overlaps and normals are found, nothing slides, stored shear is kept.
+  contact_forces(model, state, work, 0.0);
+  gather_forces(model, state, work, 0.0);
+  inspect(model, state, work);
+  state.planned_dt = next_step(model, state, work);
+}
+
+void step(const Model& model, State& state, Workspace& work) {
+  Stopwatch watch;
+  if (state.planned_dt == 0 || !work.pairs_are_valid) settle_contacts(model, state, work);
+  watch.add_to(work.profile.search);
+  const double dt = state.planned_dt;
+
+  move_clumps(model, state, work, dt);
+  move_walls(model, state, work, dt);
+  watch.add_to(work.profile.motion);
+
+  if (pairs_are_due(model, state, work)) rebuild_pairs(model, state, work);
+  watch.add_to(work.profile.search);
+  contact_forces(model, state, work, dt);
+  watch.add_to(work.profile.forces);
+  gather_forces(model, state, work, dt);
+  watch.add_to(work.profile.gather);
+
+  state.dt = dt;
+  state.time += dt;
+  ++state.step;
+  if (state.step % model.time_step.interval == 0) {
+    inspect(model, state, work);
+    state.planned_dt = next_step(model, state, work);
+  }
+}
+
+}  // namespace trackbed

@@ -1,0 +1,40 @@
+// The stable time step; docs/numerics.md, after PFC: every degree of freedom on its own with the stiffness of
+// all its contacts, times a safety factor, and a limit on how far anything travels in a step.
+#pragma once
+
+#include <vector>
+
+#include "dem/model.h"
+#include "dem/state.h"
+#include "dem/workspace.h"
+
+namespace trackbed {
+
+/// Diagonal stiffness of one body: translation in world axes [N/m], rotation about its principal axes [N m/rad].
+struct DiagonalStiffness {
+  Vec3 shift = Vec3::Zero();
+  Vec3 turn = Vec3::Zero();
+};
+
+/// Of stone `clump`, from its touching contacts.
+DiagonalStiffness stiffness_of(const Model& model, const State& state, const Workspace& work, int clump);
+
+/// Of a wall or body, from its touching contacts.
+DiagonalStiffness stiffness_of_wall(const Model& model, const State& state, const Workspace& work, int wall);
+
+/// What limits the step.
+struct StableStep {
+  double dt;          // [s]
+  int clump;          // the stone that limits it; -1: a body
+  bool is_kinematic;  // by its motion rather than its stiffness
+};
+
+/// safety x sqrt(m/K) over all degrees of freedom, each stone with at least one contact of the stiffest kind it can
+/// make at its farthest point; and the kinematic limit of the fastest.
+StableStep stable_step(const Model& model, const State& state, const Workspace& work);
+
+/// The step to take next, by the rule: stable, not grown too fast, or the user's. Throws RunError when the user's is
+/// above the stable one.
+double next_step(const Model& model, const State& state, const Workspace& work);
+
+}  // namespace trackbed
