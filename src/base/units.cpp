@@ -145,9 +145,9 @@ std::variant<double, std::string> parse_quantity(std::string_view text, Dimensio
   const std::string spelling = plain_spelling(unit);
   for (const Unit& known : table.units) {
     if (plain_spelling(known.name) != spelling) continue;
-    const double si_value = number * known.times / known.over;
-    if (!std::isfinite(si_value)) return fmt::format("\"{}\" is too large a number", all);
-    return si_value;
+    const double value = number * known.times / known.over;
+    if (!std::isfinite(value)) return fmt::format("\"{}\" is too large a number", all);
+    return value;
   }
   if (dimension == Dimension::none)
     return fmt::format("\"{}\" is not a plain number: no unit but % is allowed", all);
@@ -155,9 +155,9 @@ std::variant<double, std::string> parse_quantity(std::string_view text, Dimensio
                      with_article(table.name), units_of(dimension));
 }
 
-std::string to_text(double si_value, Dimension dimension) {
-  if (dimension == Dimension::none) return fmt::format("{}", si_value);
-  return fmt::format("{} {}", si_value, si_unit_of(dimension));
+std::string to_text(double value, Dimension dimension) {
+  if (dimension == Dimension::none) return fmt::format("{}", value);
+  return fmt::format("{} {}", value, si_unit_of(dimension));
 }
 
 }  // namespace trackbed

@@ -40,6 +40,6 @@ std::string units_of(Dimension dimension);  ///< all that may be written: "N, kN
 std::variant<double, std::string> parse_quantity(std::string_view text, Dimension dimension);
 
 /// Shortest text that reads back to the same number, with the SI unit: "0.3 m".
-std::string to_text(double si_value, Dimension dimension);
+std::string to_text(double value, Dimension dimension);
 
 }  // namespace trackbed
