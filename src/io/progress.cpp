@@ -1,0 +1,77 @@
+#include "io/progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+
+namespace trackbed {
+namespace {
+
+double seconds_between(Progress::Clock::time_point from, Progress::Clock::time_point to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+}  // namespace
+
+std::string duration_text(double seconds) {
+  if (!(seconds < 1e9)) return "very long";
+  const auto s = static_cast<long>(std::lround(seconds));
+  if (s < 60) return fmt::format("{} s", s);
+  if (s < 3600) return fmt::format("{} min {:02} s", s / 60, s % 60);
+  return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
+}
+
+std::string progress_line(const ProgressState& state, double steps_per_second, double stage_seconds) {
+  std::string line = fmt::format("{}  t = {:.4g} s  {:.3g} steps/s  {} contacts", state.stage, state.time,
+                                 steps_per_second, state.contacts);
+  if (state.fraction_done > 0 && state.fraction_done < 1) {
+    // What is left takes as long, for its part, as what is done took.
+    const double left = stage_seconds * (1 - state.fraction_done) / state.fraction_done;
+    line += fmt::format("  {:.0f} %, {} left", 100 * state.fraction_done, duration_text(left));
+  }
+  if (state.search_share > 0.3)
+    line += fmt::format("  (search {:.0f} %: a larger skin may help)", 100 * state.search_share);
+  return line;
+}
+
+Progress::Style Progress::style_of(std::FILE* out) {
+  return ::isatty(::fileno(out)) ? Style::terminal : Style::lines;
+}
+
+Progress::Progress(std::FILE* out, Style style, Clock::time_point start)
+    : out_(out), style_(style), stage_start_(start), printed_(start), rate_from_(start) {}
+
+void Progress::update(const ProgressState& state, Clock::time_point now) {
+  if (style_ == Style::quiet) return;
+  const double period = style_ == Style::terminal ? 0.2 : 5.0;  // [s]
+  const double passed = seconds_between(printed_, now);
+  if (passed < period) return;
+  rate_ = static_cast<double>(state.steps - steps_at_rate_) / seconds_between(rate_from_, now);
+  steps_at_rate_ = state.steps;
+  rate_from_ = printed_ = now;
+  print(progress_line(state, rate_, seconds_between(stage_start_, now)), false);
+}
+
+void Progress::end_stage(const ProgressState& state, Clock::time_point now) {
+  const double seconds = seconds_between(stage_start_, now);
+  const double since_rate = seconds_between(rate_from_, now);
+  if (since_rate > 0) rate_ = static_cast<double>(state.steps - steps_at_rate_) / since_rate;
+  stage_start_ = rate_from_ = printed_ = now;
+  steps_at_rate_ = state.steps;
+  if (style_ == Style::quiet) return;
+  ProgressState done = state;
+  done.fraction_done = 1;
+  print(progress_line(done, rate_, seconds) + "  done in " + duration_text(seconds), true);
+}
+
+void Progress::print(const std::string& line, bool keep) {
+  // \r to the start of the line, \x1b[K erases what the longer line before has left.
+  if (style_ == Style::terminal)
+    fmt::print(out_, "\r{}\x1b[K{}", line, keep ? "\n" : "");
+  else
+    fmt::print(out_, "{}\n", line);
+  std::fflush(out_);
+}
+
+}  // namespace trackbed
