@@ -1,0 +1,112 @@
+// A case: the whole experiment as data, and the simulation made of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/read.h"
+#include "io/schema.h"
+#include "lab/simulation.h"
+#include "lab/stage.h"
+
+namespace trackbed {
+
+/// Share by mass that passes each sieve (EN 933-1); docs/theory.md.
+struct GradingInput {
+  std::vector<double> sieves{0.0224, 0.0315, 0.040, 0.050, 0.063};  // [m], ascending
+  std::vector<double> passing{0, 0.07, 0.33, 0.71, 1};              // [-], from 0 to 1
+  std::string size = "volume";                                      // what a sieve measures: volume | sieve
+};
+
+/// Where stone shapes come from and how finely they are filled with pebbles.
+struct StonesInput {
+  std::vector<std::filesystem::path> files;  // empty: made by the generator
+  double unit = 1;                           // of the files' numbers [m]; shapes are scaled to size anyway
+  int shapes = 10;                           // made by the generator
+  std::string fidelity = "clump";            // clump | ball
+  double distance = 2.6;                     // [rad]
+  double ratio = 0.3;
+  int max_pebbles = 0;
+  double largest_elongation = 3;             // stones with a longer L/S are left out
+  std::string material = "ballast";
+  GradingInput grading;
+};
+
+struct MaterialInput {
+  double kn = 0, ks = 0, friction = 0, rolling_friction = 0, density = 0;
+};
+
+struct DashpotInput {
+  double normal = 0, shear = 0;
+  std::string mode = "full";
+};
+
+struct ContactInput {
+  std::string law = "linear";
+  std::string inherit = "series";
+  DashpotInput dashpot;
+};
+
+/// A wall, chosen by its kind (plane, box, mesh).
+struct WallInput {
+  std::string material;
+  std::string here;
+  virtual ~WallInput() = default;
+};
+
+/// A body with mass, such as the sleeper, chosen by its kind (block, mesh). It is placed by a stage.
+struct BodyInput {
+  std::string material;
+  std::string here;
+  std::optional<double> mass;      // [kg]; default: volume x density of the material
+  std::vector<std::string> free{"x", "y", "z", "turn_x", "turn_y", "turn_z"};
+  virtual ~BodyInput() = default;
+};
+
+struct NumericsInput {
+  Vec3 gravity{0, 0, -9.81};
+  double damping = 0.7;
+  double safety = 0.8;
+  double largest_travel = 0.02;
+  std::optional<double> time_step;
+  std::optional<double> skin, margin;
+  double overlap_limit = 0.25;
+  double speed_limit = 100;
+};
+
+/// What is written, and when; see lab/recorder.h.
+struct RecordInput {
+  double every = 1e-3;                           // between two rows of series.csv [s]
+  std::vector<std::string> measures;             // further columns of series.csv
+  std::vector<double> force_bins{100, 500, 1000, 2000, 3000};  // limits of the histogram [N]
+  bool tables = true;                            // contacts.csv and stones.csv at stage ends
+  std::optional<double> paraview_every;          // [s]; default: at stage ends only
+  std::string paraview_stones = "surfaces";      // surfaces | pebbles | none
+  bool picture = true;                           // bed.png at stage ends
+};
+
+struct CaseInput {
+  std::string title;
+  std::uint64_t seed = 1;
+  StonesInput stones;
+  std::map<std::string, MaterialInput> materials;
+  ContactInput contact;
+  std::map<std::string, OneOf<WallInput>> walls;
+  std::map<std::string, OneOf<BodyInput>> bodies;
+  NumericsInput numerics;
+  RecordInput record;
+  std::vector<OneOf<StageInput>> stages;
+};
+
+void declare(Fields& f, CaseInput& in);
+
+/// Checks what the declaration alone cannot (names that must exist, shapes that must be readable) and makes the
+/// simulation: materials, stone templates, walls; bodies stand far above until a stage places them, stones are
+/// added by the fill stage. Throws InputError with file and line.
+Simulation make_simulation(const Document& document, const CaseInput& experiment);
+
+}  // namespace trackbed

@@ -1,0 +1,56 @@
+// A stage of an experiment: it sets targets and says when it is done; the engine moves the stones.
+//
+// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, and a child
+// of Stage; and a row in stages/table.cpp.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/units.h"
+#include "io/schema.h"
+#include "lab/simulation.h"
+
+namespace trackbed {
+
+/// A number found by a stage or a measure.
+struct Result {
+  std::string name;
+  double value = 0;  // SI
+  Dimension dimension = Dimension::none;
+};
+
+/// What every stage has.
+struct StageInput {
+  std::string name;  // default: its kind
+  std::string here;  // where it stands in the file, for errors found later
+  virtual ~StageInput() = default;
+};
+
+/// Declares the keys that every stage has; each stage's `declare` calls it first.
+void declare_common(Fields& f, StageInput& in);
+
+class Stage {
+ public:
+  virtual ~Stage() = default;
+
+  /// Called once before the first step; may add, remove and place stones.
+  virtual void open(Simulation& sim) = 0;
+  /// Called before each step: sets the targets of drives.
+  virtual void control(Simulation&) {}
+  virtual bool finished(const Simulation& sim) = 0;
+  /// Called once after the last step: undoes what the stage changed in the model; returns what it found.
+  virtual std::vector<Result> close(Simulation&) { return {}; }
+  /// Simulated time this stage will take from now on, for the progress line [s]; 0: not known.
+  virtual double remaining(const Simulation&) const { return 0; }
+};
+
+/// What the stages need besides the simulation: made of the case.
+struct CaseInput;
+std::unique_ptr<Stage> make_stage(const OneOf<StageInput>& input, const CaseInput& experiment);
+
+/// All stages that a case may name.
+const Kinds<StageInput>& stage_kinds();
+
+}  // namespace trackbed
