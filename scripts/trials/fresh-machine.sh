@@ -131,7 +131,7 @@ try() {
     result="FAILED ($status)"
     ((status == 137)) && result="OUT OF TIME"
     echo "--- the end of $logs/$name.log:"
-    tail -n 25 "$logs/$name.log"
+    tail -n 25 "$logs/$name.log" | cut -c1-200
     echo "---"
   fi
   row "$name" "$result" $((SECONDS - start))
