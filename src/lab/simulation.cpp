@@ -20,6 +20,7 @@ int add_wall(Simulation& sim, Wall wall, const Pose& pose) {
   sim.model.walls.push_back(std::move(wall));
   sim.state.walls.emplace_back();
   sim.state.walls.back().pose = pose;
+  sim.wall_reference.push_back(pose);
   return static_cast<int>(sim.model.walls.size()) - 1;
 }
 

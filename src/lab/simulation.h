@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "dem/inspect.h"
 #include "dem/model.h"
@@ -19,6 +20,8 @@ struct Simulation {
   Workspace work;
   std::uint64_t seed = 1;
   double box_volume = 0;     // inside of the container [m^3]; 0: there is none
+  Eigen::AlignedBox3d container;     // inside of the container [m]; empty: there is none
+  std::vector<Pose> wall_reference;  // where each wall and body stood at the start, or where a stage placed it
   std::string stage;         // name of the one that runs
 
   /// Index of the wall or body of that name; -1 when there is none.
