@@ -1,55 +1,12 @@
-// Simple closed meshes whose properties are known.
+// Shapes for the tests of this folder.
 #pragma once
 
-#include <cmath>
-#include <map>
-#include <utility>
-
-#include "geom/mesh.h"
+#include "geom/primitives.h"
 
 namespace trackbed::testing {
 
-/// An axis-aligned box of 12 facets with one corner at `low`.
-inline TriangleMesh box_mesh(const Vec3& size, const Vec3& low = Vec3::Zero()) {
-  TriangleMesh mesh;
-  for (int k = 0; k < 8; ++k)
-    mesh.vertices.push_back(low + Vec3(k & 1 ? size.x() : 0, k & 2 ? size.y() : 0, k & 4 ? size.z() : 0));
-  mesh.facets = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-  return mesh;
-}
-
-/// An icosahedron whose facets are split in four `level` times, with all vertices on the sphere.
-inline TriangleMesh icosphere(int level, double radius) {
-  const double g = (1 + std::sqrt(5.0)) / 2;
-  TriangleMesh mesh;
-  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  mesh.facets = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-  for (int k = 0; k < level; ++k) {
-    std::map<std::pair<int, int>, int> midpoints;
-    const auto midpoint = [&](int a, int b) {
-      const auto [found, is_new] =
-          midpoints.try_emplace(std::minmax(a, b), static_cast<int>(mesh.vertices.size()));
-      if (is_new)
-        mesh.vertices.push_back(
-            (mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)])
-                .normalized());
-      return found->second;
-    };
-    for (Vec3& v : mesh.vertices) v.normalize();
-    std::vector<std::array<int, 3>> finer;
-    for (const auto& [a, b, c] : mesh.facets) {
-      const int ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
-      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
-    }
-    mesh.facets = std::move(finer);
-  }
-  for (Vec3& v : mesh.vertices) v *= radius / v.norm();
-  return mesh;
-}
+using trackbed::box_mesh;
+using trackbed::icosphere;
 
 inline TriangleMesh turned(TriangleMesh mesh, const Quat& rotation, const Vec3& shift = Vec3::Zero()) {
   for (Vec3& v : mesh.vertices) v = rotation * v + shift;

@@ -1,0 +1,186 @@
+#include "geom/stone_generator.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "base/error.h"
+#include "base/rng.h"
+#include "geom/mass_properties.h"
+#include "geom/primitives.h"
+#include "geom/shape.h"
+
+namespace trackbed {
+namespace {
+
+constexpr int mesh_level = 4;      // 5120 facets
+constexpr int waves = 40;          // of the uneven surface
+constexpr int stretch_rounds = 3;  // to reach the wanted I/L and S/I
+
+/// A stone as a distance from its middle for every direction. The graph of such a function over a sphere can
+/// never cross itself, whatever is taken away.
+struct RadialStone {
+  struct Plane {
+    Vec3 normal;
+    double offset;
+  };
+  struct Hollow {
+    Vec3 centre;
+    double radius;
+  };
+  struct Wave {
+    Vec3 number;
+    double phase, amplitude;
+  };
+  std::vector<Plane> planes;
+  std::vector<Hollow> hollows;
+  std::vector<Wave> waves;
+
+  double radius(const Vec3& direction) const {
+    double r = std::numeric_limits<double>::infinity();
+    for (const Plane& p : planes) {
+      const double slope = p.normal.dot(direction);
+      if (slope > 1e-9) r = std::min(r, p.offset / slope);
+    }
+    for (const Hollow& h : hollows) {  // the near side of the ball, if the direction meets it
+      const double along = h.centre.dot(direction);
+      const double root = along * along - h.centre.squaredNorm() + h.radius * h.radius;
+      if (along > 0 && root > 0) r = std::min(r, along - std::sqrt(root));
+    }
+    double uneven = 1;
+    for (const Wave& w : waves) uneven += w.amplitude * std::cos(w.number.dot(direction) + w.phase);
+    return r * uneven;
+  }
+};
+
+Vec3 random_direction(Rng& rng) {
+  const double z = rng.uniform(-1, 1), angle = rng.uniform(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+double draw(Rng& rng, const Range& range) {
+  return rng.uniform(range.low, range.high);
+}
+int draw_count(Rng& rng, const Range& range) {
+  return static_cast<int>(std::floor(rng.uniform(range.low, range.high + 1)));
+}
+
+/// Normals keep their distance from one another, so that the planes close the stone on all sides: of a few
+/// candidates the one farthest from those before is taken (Mitchell's best candidate).
+std::vector<RadialStone::Plane> draw_planes(Rng& rng, int count) {
+  std::vector<RadialStone::Plane> planes;
+  for (int k = 0; k < count; ++k) {
+    Vec3 best = random_direction(rng);
+    double nearest = 2;
+    for (int tries = 0; tries < 4; ++tries) {
+      const Vec3 normal = random_direction(rng);
+      double closest = -1;
+      for (const auto& p : planes) closest = std::max(closest, p.normal.dot(normal));
+      if (closest < nearest) nearest = closest, best = normal;
+    }
+    planes.push_back({best, rng.uniform(0.80, 1.10)});
+  }
+  return planes;
+}
+
+RadialStone draw_stone(Rng& rng, const StoneRecipe& recipe) {
+  RadialStone stone;
+  stone.planes = draw_planes(rng, draw_count(rng, recipe.faces));
+  const int hollows = draw_count(rng, recipe.hollows);
+  for (int k = 0; k < hollows; ++k) {
+    const Vec3 direction = random_direction(rng);
+    const double radius = rng.uniform(0.5, 1.3), depth = draw(rng, recipe.hollow_depth);
+    stone.hollows.push_back({(stone.radius(direction) - depth + radius) * direction, radius});
+  }
+  if (recipe.roughness > 0) {
+    for (int k = 0; k < waves; ++k) {
+      const double number = rng.uniform(2, 16);  // lengths from the whole stone down to a few facets
+      stone.waves.push_back({number * random_direction(rng), rng.uniform(0, 2 * std::numbers::pi),
+                             recipe.roughness * 2.5 / (number * std::sqrt(waves / 8.0))});
+    }
+  }
+  return stone;
+}
+
+/// The planes' polyhedron, exact: its corners are the facets of the hull of the dual points normal / offset.
+TriangleMesh polyhedron(const std::vector<RadialStone::Plane>& planes) {
+  TriangleMesh dual;
+  for (const auto& p : planes) dual.vertices.push_back(p.normal / p.offset);
+  dual = convex_hull(dual);
+  TriangleMesh corners;
+  for (std::size_t f = 0; f < dual.facets.size(); ++f) {
+    const auto [a, b, c] = dual.corners(f);
+    const Vec3 normal = (b - a).cross(c - a);
+    corners.vertices.push_back(normal / normal.dot(a));
+  }
+  return convex_hull(corners);
+}
+
+TriangleMesh radial_mesh(const RadialStone& stone) {
+  TriangleMesh mesh = icosphere(mesh_level, 1);
+  for (Vec3& v : mesh.vertices) v *= stone.radius(v);
+  return mesh;
+}
+
+/// Turns the box's axes onto x, y, z and stretches the stone until its box has the wanted proportions.
+void stretch(TriangleMesh& mesh, double elongation, double flatness) {
+  for (int round = 0; round < stretch_rounds; ++round) {
+    const Shape shape = measure_shape(mesh);
+    Mat3 axes = shape.box_axes;
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    const Vec3 factor(1, elongation * shape.length / shape.breadth,
+                      elongation * flatness * shape.length / shape.thickness);
+    for (Vec3& v : mesh.vertices) v = factor.asDiagonal() * (axes.transpose() * v);
+  }
+}
+
+void check(const StoneRecipe& r) {
+  const auto fits = [](const Range& range, double low, double high, const char* what) {
+    if (!(range.low >= low && range.low <= range.high && range.high <= high))
+      throw InputError(
+          fmt::format("stone generator: {} must lie from {:g} to {:g}, low before high, not {:g} to {:g}",
+                      what, low, high, range.low, range.high));
+  };
+  fits(r.faces, 6, 200, "the number of faces");
+  fits(r.elongation, 0.1, 1, "the elongation I/L");
+  fits(r.flatness, 0.1, 1, "the flatness S/I");
+  fits(r.hollows, 0, 100, "the number of hollows");
+  fits(r.hollow_depth, 0, 0.5, "the depth of a hollow");
+  fits({r.roughness, r.roughness}, 0, 0.1, "the roughness");
+  if (!(r.sieve_size > 0)) throw InputError("stone generator: the sieve size must be positive");
+  if (!(r.largest_l_over_s * r.elongation.high * r.flatness.high > 1.01))
+    throw InputError("stone generator: no stone of this elongation and flatness has so small an L/S");
+}
+
+}  // namespace
+
+StoneRecipe convex_recipe() {
+  StoneRecipe recipe;
+  recipe.hollows = {0, 0};
+  recipe.roughness = 0;
+  return recipe;
+}
+
+TriangleMesh generate_stone(const StoneRecipe& recipe, std::uint64_t seed, int index) {
+  check(recipe);
+  Rng rng(seed, fmt::format("stone {}", index));
+  double elongation = 0, flatness = 0;
+  do {
+    elongation = draw(rng, recipe.elongation);
+    flatness = draw(rng, recipe.flatness);
+  } while (elongation * flatness * recipe.largest_l_over_s < 1.005);  // the box is found within 0.5 %
+  const RadialStone stone = draw_stone(rng, recipe);
+  const bool convex = stone.hollows.empty() && stone.waves.empty();
+  TriangleMesh mesh = convex ? polyhedron(stone.planes) : radial_mesh(stone);
+  stretch(mesh, elongation, flatness);
+  const double scale = recipe.sieve_size / measure_shape(mesh).sieve_size;
+  const Vec3 centre = mass_properties(mesh).centre;
+  for (Vec3& v : mesh.vertices) v = scale * (v - centre);
+  return mesh;
+}
+
+}  // namespace trackbed
