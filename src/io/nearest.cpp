@@ -45,7 +45,9 @@ std::string known_words(std::string_view word, const std::vector<std::string>& k
   if (known.empty()) return "nothing is allowed here";
   const std::vector<std::string> sorted = by_distance(word, known);
   const std::size_t allowed = std::max<std::size_t>(1, std::min(word.size(), sorted.front().size()) / 2);
-  const bool near = word.size() <= 64 && edit_distance(word, sorted.front()) <= allowed;
+  const bool longer =
+      word.size() > 2 && (word.starts_with(sorted.front()) || sorted.front().starts_with(word));
+  const bool near = word.size() <= 64 && (longer || edit_distance(word, sorted.front()) <= allowed);
   const std::string list = fmt::format("known here: {}", fmt::join(sorted, ", "));
   return near ? fmt::format("did you mean {}? {}", sorted.front(), list) : list;
 }

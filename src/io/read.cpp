@@ -179,7 +179,8 @@ void Reader::read_inside(const Node& node, const std::string& path, const std::s
 }
 
 std::string hint_for(const SyntaxError& error) {
-  if (error.problem.find("expected a comment or whitespace") != std::string::npos)
+  const auto says = [&](std::string_view words) { return error.problem.find(words) != std::string::npos; };
+  if (says("expected a comment or whitespace") || says("expected digit, saw"))
     return "a quantity with its unit stands in quotes: \"5 kN\"";
   if (error.problem.find("cannot redefine") != std::string::npos)
     return "a key is given once; this one stands above";

@@ -27,6 +27,8 @@ std::string damage(std::string text, Rng& rng) {
                                                   "\\u",
                                                   "\xff",
                                                   "\xc3",
+                                                  "\u00b5",
+                                                  "\u3000",
                                                   "-1",
                                                   "nan",
                                                   "inf",

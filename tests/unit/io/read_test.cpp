@@ -213,6 +213,11 @@ TEST(Read, BrokenToml) {
             "cases/box/case.toml:1:11: error: this is not UTF-8 text: save the file with the encoding UTF-8\n"
             "  1 | title = \"B?x\"\n"
             "    |           ^");
+  EXPECT_EQ(error_of("seed = 5µ\n"),
+            "cases/box/case.toml:1:9: error: in this decimal integer: expected digit, saw 'µ'\n"
+            "  1 | seed = 5µ\n"
+            "    |         ^\n"
+            "  hint: a quantity with its unit stands in quotes: \"5 kN\"");
   EXPECT_NE(error_of("[$"), "");
   EXPECT_NE(error_of(std::string("title = \"a\0b\"", 13)), "");
 }

@@ -65,7 +65,7 @@ std::vector<T> array_in(const std::string& xml, std::string_view where, std::str
   }
   EXPECT_EQ(at, packed.size());
   std::vector<T> values(bytes.size() / sizeof(T));
-  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), values.size() * sizeof(T));
   return values;
 }
 
