@@ -102,7 +102,7 @@ EnergyBalance energy_of(const Model& model, const State& state) {
     e.boundary_work += wall.boundary_work;
     e.applied_work += wall.applied_work;
     e.damping_loss += wall.damping_loss;
-    if (const auto& body = model.walls[w].body) {
+    if (const auto& body = model.walls[w].body; body && wall.present) {
       e.kinetic += kinetic_energy(model, *body, wall, state.dt);
       e.potential -= body->mass * model.gravity.dot(wall.pose.position);
     }

@@ -120,6 +120,7 @@ void move_walls(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
   for (Index w = 0; w < state.walls.size(); ++w) {
     WallState& wall = state.walls[w];
+    if (!wall.present) continue;
     if (const auto& body = model.walls[w].body) {
       move_body(model, *body, wall, kick_time, dt);
     } else {

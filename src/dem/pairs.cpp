@@ -116,7 +116,7 @@ bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
 std::vector<std::pair<int, int>> near_walls(const Model& model, const State& state, const Workspace& work) {
   std::vector<std::pair<int, int>> pairs;
   for (Index w = 0; w < model.walls.size(); ++w)
-    for (int c = 0; c < state.clumps.size(); ++c) {
+    for (int c = 0; state.walls[w].present && c < state.clumps.size(); ++c) {
       const Vec3 centre = state.walls[w].pose.to_body(state.clumps.position[static_cast<Index>(c)]);
       if (is_near(model.walls[w].shape, centre, work.bound[static_cast<Index>(c)] + work.margin))
         pairs.emplace_back(static_cast<int>(w), c);

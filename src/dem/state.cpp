@@ -125,6 +125,7 @@ std::uint64_t hash(const State& state) {
       h.add(loss);
   }
   for (const WallState& w : state.walls) {
+    h.add(w.present);
     for (const Vec3* v : {&w.pose.position, &w.velocity, &w.angular_velocity, &w.angular_momentum, &w.force,
                           &w.moment, &w.applied_force, &w.applied_moment})
       add(h, *v);

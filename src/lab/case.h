@@ -25,7 +25,6 @@ struct GradingInput {
 /// Where stone shapes come from and how finely they are filled with pebbles.
 struct StonesInput {
   std::vector<std::filesystem::path> files;  // empty: made by the generator
-  double unit = 1;                           // of the files' numbers [m]; shapes are scaled to size anyway
   int shapes = 10;                           // made by the generator
   std::string fidelity = "clump";            // clump | ball
   double distance = 2.6;                     // [rad]
@@ -54,18 +53,24 @@ struct ContactInput {
 /// A wall, chosen by its kind (plane, box, mesh).
 struct WallInput {
   std::string material;
-  std::string here;
+  std::string here;  // where it stands in the file, for errors found later
   virtual ~WallInput() = default;
+  /// Adds it to the simulation under its name.
+  virtual void build(const std::string& name, int material_index, Simulation& sim) const = 0;
 };
 
 /// A body with mass, such as the sleeper, chosen by its kind (block, mesh). It is placed by a stage.
 struct BodyInput {
   std::string material;
   std::string here;
-  std::optional<double> mass;      // [kg]; default: volume x density of the material
+  std::optional<double> mass;  // [kg]; default: volume x density of the material
   std::vector<std::string> free{"x", "y", "z", "turn_x", "turn_y", "turn_z"};
   virtual ~BodyInput() = default;
+  virtual TriangleMesh shape() const = 0;
 };
+
+const Kinds<WallInput>& wall_kinds();
+const Kinds<BodyInput>& body_kinds();
 
 struct NumericsInput {
   Vec3 gravity{0, 0, -9.81};

@@ -19,7 +19,6 @@ struct Simulation {
   State state;
   Workspace work;
   std::uint64_t seed = 1;
-  double box_volume = 0;     // inside of the container [m^3]; 0: there is none
   Eigen::AlignedBox3d container;     // inside of the container [m]; empty: there is none
   std::vector<Pose> wall_reference;  // where each wall and body stood at the start, or where a stage placed it
   std::string stage;         // name of the one that runs

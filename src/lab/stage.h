@@ -1,7 +1,7 @@
 // A stage of an experiment: it sets targets and says when it is done; the engine moves the stones.
 //
-// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, and a child
-// of Stage; and a row in stages/table.cpp.
+// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, a child of
+// Stage and its row; and the row's name in stages/table.cpp.
 #pragma once
 
 #include <memory>
@@ -21,11 +21,15 @@ struct Result {
   Dimension dimension = Dimension::none;
 };
 
+class Stage;
+struct CaseInput;
+
 /// What every stage has.
 struct StageInput {
   std::string name;  // default: its kind
   std::string here;  // where it stands in the file, for errors found later
   virtual ~StageInput() = default;
+  virtual std::unique_ptr<Stage> make(const CaseInput& experiment) const = 0;
 };
 
 /// Declares the keys that every stage has; each stage's `declare` calls it first.
@@ -45,10 +49,6 @@ class Stage {
   /// Simulated time this stage will take from now on, for the progress line [s]; 0: not known.
   virtual double remaining(const Simulation&) const { return 0; }
 };
-
-/// What the stages need besides the simulation: made of the case.
-struct CaseInput;
-std::unique_ptr<Stage> make_stage(const OneOf<StageInput>& input, const CaseInput& experiment);
 
 /// All stages that a case may name.
 const Kinds<StageInput>& stage_kinds();

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "geom/primitives.h"
 #include "lab/simulation.h"
 
 namespace trackbed::scenes {
@@ -38,9 +39,6 @@ int add_plate(Simulation& sim, const TriangleMesh& mesh, const Pose& pose = {});
 
 /// A rectangle [x0, x1] x [y0, y1] at height z, cut into nx x ny cells of two triangles each, facing up.
 TriangleMesh plate(double x0, double x1, double y0, double y1, double z, int nx, int ny);
-
-/// A box mesh with its centre at the origin, facing outward.
-TriangleMesh box_mesh(const Vec3& size);
 
 /// sqrt(m/k) of the setting's ball [s].
 double contact_time_scale(const Setting& setting);

@@ -1,0 +1,45 @@
+#include "lab/grading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+namespace trackbed {
+namespace {
+
+double ball_volume(double diameter) { return std::numbers::pi / 6.0 * diameter * diameter * diameter; }
+
+}  // namespace
+
+std::vector<double> draw_sizes(const GradingInput& grading, double solid_volume, Rng& rng) {
+  std::vector<double> sizes;
+  for (std::size_t band = 1; band < grading.sieves.size(); ++band) {
+    const double share = (grading.passing[band] - grading.passing[band - 1]) * solid_volume;
+    double volume = 0;
+    while (volume < share) {
+      const double size = rng.uniform(grading.sieves[band - 1], grading.sieves[band]);
+      const double more = ball_volume(size);
+      if (volume + more - share > share - volume) break;
+      volume += more;
+      sizes.push_back(size);
+    }
+  }
+  std::sort(sizes.begin(), sizes.end(), std::greater<>());
+  return sizes;
+}
+
+std::vector<double> passing(const GradingInput& grading, const std::vector<double>& sizes) {
+  std::vector<double> shares;
+  double all = 0;
+  for (double size : sizes) all += ball_volume(size);
+  for (double sieve : grading.sieves) {
+    double below = 0;
+    for (double size : sizes)
+      if (size < sieve) below += ball_volume(size);
+    shares.push_back(all > 0 ? below / all : 0);
+  }
+  return shares;
+}
+
+}  // namespace trackbed

@@ -1,0 +1,19 @@
+// Stone sizes by a grading curve.
+#pragma once
+
+#include <vector>
+
+#include "base/rng.h"
+#include "lab/case.h"
+
+namespace trackbed {
+
+/// Sizes [m] of stones whose volumes (pi d^3/6) add up to `solid_volume` [m^3] with the shares by mass that the
+/// grading asks for: within a band sizes are drawn uniformly by number; the last stone of a band is taken when it
+/// brings the band's volume nearer to its share. Largest first.
+std::vector<double> draw_sizes(const GradingInput& grading, double solid_volume, Rng& rng);
+
+/// Share of volume that passes each sieve, of stones of these sizes [-].
+std::vector<double> passing(const GradingInput& grading, const std::vector<double>& sizes);
+
+}  // namespace trackbed

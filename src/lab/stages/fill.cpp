@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+
+#include "base/error.h"
+#include "base/rng.h"
+#include "dem/overlap.h"
+#include "lab/case.h"
+#include "lab/grading.h"
+#include "lab/stages/table.h"
+
+namespace trackbed {
+namespace {
+
+struct FillInput : StageInput {
+  double porosity = 0.4;
+  double density = 0.22;
+  double clearance = 0.2e-3;  // [m]
+  std::unique_ptr<Stage> make(const CaseInput& experiment) const override;
+};
+
+void declare(Fields& f, FillInput& in) {
+  declare_common(f, in);
+  f.number("porosity", in.porosity, {.above = 0, .below = 1},
+           "nominal: the stones' volume is (1 - porosity) x the volume of the container");
+  f.number("density", in.density, {.above = 0, .at_most = 0.3},
+           "share of the column above the floor that the falling stones take up");
+  f.quantity("clearance", in.clearance, Dimension::length, {.above = 0}, "left free between stones");
+}
+
+/// Places stones of the given sizes at random, none touching another or a wall, in a column over the container's
+/// floor (random sequential addition, the largest first).
+class Fill : public Stage {
+ public:
+  Fill(const FillInput& in, const CaseInput& experiment) : in_(in), stones_(experiment.stones) {}
+
+  void open(Simulation& sim) override {
+    if (sim.container.isEmpty())
+      throw InputError(fmt::format("stage {}: there is no container to fill: declare a wall of kind box", in_.name));
+    Rng sizes_rng(sim.seed, "sizes"), rng(sim.seed, "places");
+    sizes_ = draw_sizes(stones_.grading, (1.0 - in_.porosity) * sim.container.volume(), sizes_rng);
+    if (sizes_.empty())
+      throw InputError(fmt::format("stage {}: the container is too small for a single stone of the grading", in_.name));
+    double volume = 0;
+    for (double size : sizes_) volume += std::numbers::pi / 6.0 * size * size * size;
+    const Vec3 extent = sim.container.sizes();
+    column_ = sim.container;
+    column_.max().z() = column_.min().z() + volume / (in_.density * extent.x() * extent.y()) + 2.0 * sizes_.front();
+    cell_ = largest_bound(sim);
+    for (double size : sizes_) place(sim, size, rng);
+    sim.model.limits.domain.extend(column_);
+    sim.changed();
+  }
+
+  bool finished(const Simulation&) override { return true; }
+
+  std::vector<Result> close(Simulation& sim) override {
+    std::vector<Result> results{{"added", static_cast<double>(sizes_.size()), Dimension::none},
+                                {"column_height", column_.sizes().z(), Dimension::length}};
+    const std::vector<double> shares = passing(stones_.grading, sizes_);
+    for (std::size_t k = 0; k < shares.size(); ++k)
+      results.push_back({fmt::format("passing_{:g}_mm", 1e3 * stones_.grading.sieves[k]), shares[k], Dimension::none});
+    return results;
+  }
+
+ private:
+  using Cell = std::int64_t;
+
+  double scale_of(const ClumpTemplate& t, double size) const {
+    if (stones_.grading.size == "sieve") return size / t.sieve_size;
+    return size / std::cbrt(6.0 * t.volume / std::numbers::pi);
+  }
+
+  double largest_bound(const Simulation& sim) const {
+    double bound = 0;
+    for (const ClumpTemplate& t : sim.model.templates)
+      bound = std::max(bound, t.bounding_radius * scale_of(t, sizes_.front()));
+    return 2.0 * bound + in_.clearance;
+  }
+
+  Cell cell_at(std::int64_t x, std::int64_t y, std::int64_t z) const {
+    return (x * 1048576 + y) * 1048576 + z;
+  }
+  std::array<std::int64_t, 3> place_of(const Vec3& p) const {
+    const Vec3 at = ((p - column_.min()) / cell_).array().floor();
+    return {static_cast<std::int64_t>(at.x()) + 2, static_cast<std::int64_t>(at.y()) + 2,
+            static_cast<std::int64_t>(at.z()) + 2};
+  }
+
+  bool is_free(const Simulation& sim, int stone) const {
+    for (std::size_t w = 0; w < sim.state.walls.size(); ++w)
+      if (sim.state.walls[w].present &&
+          stone_meets_wall(sim.model, sim.state, stone, static_cast<int>(w), in_.clearance))
+        return false;
+    const auto [x, y, z] = place_of(sim.state.clumps.position[static_cast<std::size_t>(stone)]);
+    for (std::int64_t dx = -1; dx <= 1; ++dx)
+      for (std::int64_t dy = -1; dy <= 1; ++dy)
+        for (std::int64_t dz = -1; dz <= 1; ++dz) {
+          const auto cell = cells_.find(cell_at(x + dx, y + dy, z + dz));
+          if (cell == cells_.end()) continue;
+          for (int other : cell->second)
+            if (stones_meet(sim.model, sim.state.clumps, stone, other, in_.clearance)) return false;
+        }
+    return true;
+  }
+
+  void place(Simulation& sim, double size, Rng& rng) {
+    const int shape = static_cast<int>(rng.index(static_cast<std::uint32_t>(sim.model.templates.size())));
+    const double scale = scale_of(sim.model.templates[static_cast<std::size_t>(shape)], size);
+    const int material = sim.find_material(stones_.material);
+    const int stone = add_clump(sim.model, sim.state, shape, scale, material, {});
+    Clumps& c = sim.state.clumps;
+    const auto k = static_cast<std::size_t>(stone);
+    constexpr int tries_before_growth = 500;
+    for (int tries = 1;; ++tries) {
+      c.position[k] = {rng.uniform(column_.min().x(), column_.max().x()),
+                       rng.uniform(column_.min().y(), column_.max().y()),
+                       rng.uniform(column_.min().z(), column_.max().z())};
+      c.orientation[k] = rng.rotation();
+      if (is_free(sim, stone)) break;
+      // No room: a higher column.
+      if (tries % tries_before_growth == 0) column_.max().z() += 0.05 * column_.sizes().z();
+      if (tries > 100 * tries_before_growth)
+        throw InputError(fmt::format("stage {}: a stone of {:.1f} mm does not fit into the container", in_.name,
+                                     1e3 * size));
+    }
+    const auto [x, y, z] = place_of(c.position[k]);
+    cells_[cell_at(x, y, z)].push_back(stone);
+  }
+
+  FillInput in_;
+  StonesInput stones_;
+  std::vector<double> sizes_;  // [m]
+  Eigen::AlignedBox3d column_;
+  double cell_ = 0;            // [m]
+  std::unordered_map<Cell, std::vector<int>> cells_;
+};
+
+std::unique_ptr<Stage> FillInput::make(const CaseInput& experiment) const {
+  return std::make_unique<Fill>(*this, experiment);
+}
+
+}  // namespace
+
+Kind<StageInput> fill_stage() {
+  return kind_of<StageInput, FillInput>(
+      "fill", "fills a column over the container with stones by the grading, none touching");
+}
+
+}  // namespace trackbed

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "base/error.h"
+#include "lab/stages/table.h"
+
+namespace trackbed {
+namespace {
+
+struct SettleInput : StageInput {
+  double unbalanced_ratio = 1e-3;
+  double time_limit = 10;          // [s]
+  std::optional<double> friction;  // during this stage
+  std::optional<double> damping;   // during this stage
+  std::unique_ptr<Stage> make(const CaseInput&) const override;
+};
+
+void declare(Fields& f, SettleInput& in) {
+  declare_common(f, in);
+  f.number("unbalanced_ratio", in.unbalanced_ratio, {.above = 0, .below = 1},
+           "at rest when the sum of unbalanced forces is below this share of the sum of all forces");
+  f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0}, "the run fails when rest takes longer");
+  f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
+           "upper bound on the friction of all contacts during this stage: low values make a denser bed");
+  f.number("damping", in.damping, {.at_least = 0, .below = 1}, "local damping during this stage");
+}
+
+class Settle : public Stage {
+ public:
+  explicit Settle(const SettleInput& in) : in_(in) {}
+
+  void open(Simulation& sim) override {
+    start_ = sim.state.time;
+    pairs_ = sim.model.pairs;
+    damping_ = sim.model.local_damping;
+    if (in_.damping) sim.model.local_damping = *in_.damping;
+    if (!in_.friction) return;
+    PairTable& pairs = sim.model.pairs;
+    for (int a = 0; a < pairs.size(); ++a)
+      for (int b = 0; b < pairs.size(); ++b) pairs(a, b).friction = std::min(pairs(a, b).friction, *in_.friction);
+  }
+
+  bool finished(const Simulation& sim) override {
+    if (sim.state.step % look_every != 0 || sim.state.clumps.size() == 0) return sim.state.clumps.size() == 0;
+    // Stones that pass through their rest position are for a moment without acceleration, but not at rest: the
+    // ratio must stay low.
+    const double ratio = unbalanced_ratio(sim.model, sim.state);
+    calm_ = ratio < in_.unbalanced_ratio ? calm_ + 1 : 0;
+    if (calm_ >= looks_needed) return true;
+    if (sim.state.time - start_ > in_.time_limit)
+      throw RunError(fmt::format("not at rest after {:.3g} s: the unbalanced ratio is {:.2e}, {:.2e} was asked for",
+                                 in_.time_limit, ratio, in_.unbalanced_ratio));
+    return false;
+  }
+
+  std::vector<Result> close(Simulation& sim) override {
+    sim.model.pairs = pairs_;
+    sim.model.local_damping = damping_;
+    return {{"time", sim.state.time - start_, Dimension::time},
+            {"unbalanced_ratio", unbalanced_ratio(sim.model, sim.state), Dimension::none}};
+  }
+
+ private:
+  static constexpr int look_every = 50, looks_needed = 5;
+  SettleInput in_;
+  double start_ = 0, damping_ = 0;
+  PairTable pairs_;
+  int calm_ = 0;
+};
+
+std::unique_ptr<Stage> SettleInput::make(const CaseInput&) const { return std::make_unique<Settle>(*this); }
+
+}  // namespace
+
+Kind<StageInput> settle_stage() {
+  return kind_of<StageInput, SettleInput>("settle", "lets the stones come to rest under gravity");
+}
+
+}  // namespace trackbed

@@ -1,0 +1,19 @@
+// The rows of the stages, each defined in the file of its name.
+#pragma once
+
+#include "lab/stage.h"
+
+namespace trackbed {
+
+Kind<StageInput> fill_stage();
+Kind<StageInput> settle_stage();
+Kind<StageInput> insert_stage();
+Kind<StageInput> load_stage();
+Kind<StageInput> move_stage();
+Kind<StageInput> servo_stage();
+Kind<StageInput> hold_stage();
+
+/// Index of the wall or body that a stage names; throws InputError listing those there are.
+int wall_of(const Simulation& sim, const StageInput& in, const std::string& wall, bool must_be_body);
+
+}  // namespace trackbed

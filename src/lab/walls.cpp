@@ -1,0 +1,142 @@
+// The kinds of walls and bodies a case may name.
+#include "lab/case.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geom/mesh_io.h"
+#include "geom/primitives.h"
+#include "geom/solid.h"
+
+namespace trackbed {
+namespace {
+
+struct PlaneInput : WallInput {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal{0, 0, 1};
+
+  void build(const std::string& name, int material_index, Simulation& sim) const override {
+    const Quat up = Quat::FromTwoVectors(Vec3::UnitZ(), normal.normalized());
+    add_wall(sim, {make_plane_wall(name, 0.5), material_index, {}}, {point, up});
+  }
+};
+
+void declare(Fields& f, PlaneInput& in) {
+  in.here = f.here();
+  f.text(required("material"), in.material, "a material of the case");
+  f.vector("point", in.point, Dimension::length, {}, "a point of the plane");
+  f.vector("normal", in.normal, Dimension::none, {}, "towards the stones");
+  f.check(in.normal.norm() > 0, "normal", "the normal is zero", "give a vector such as [0, 0, 1]");
+}
+
+/// Five unbounded planes: a floor at z = 0 and four sides, open above. Stones are never lost over a rim.
+struct BoxInput : WallInput {
+  Vec3 size = Vec3::Zero();
+
+  void build(const std::string& name, int material_index, Simulation& sim) const override {
+    const double x = 0.5 * size.x(), y = 0.5 * size.y(), z = size.z();
+    add_side(sim, name + ".floor", material_index, {Vec3::Zero(), Vec3::UnitZ()}, {x, y});
+    add_side(sim, name + ".left", material_index, {Vec3(-x, 0, z / 2), Vec3::UnitX()}, {z / 2, y});
+    add_side(sim, name + ".right", material_index, {Vec3(x, 0, z / 2), -Vec3::UnitX()}, {z / 2, y});
+    add_side(sim, name + ".front", material_index, {Vec3(0, -y, z / 2), Vec3::UnitY()}, {x, z / 2});
+    add_side(sim, name + ".back", material_index, {Vec3(0, y, z / 2), -Vec3::UnitY()}, {x, z / 2});
+    sim.container.extend(Vec3(-x, -y, 0));
+    sim.container.extend(Vec3(x, y, z));
+  }
+
+ private:
+  struct Side {
+    Vec3 middle, normal;
+  };
+  static void add_side(Simulation& sim, const std::string& name, int material, const Side& side,
+                       const std::array<double, 2>& half) {
+    const Quat up = Quat::FromTwoVectors(Vec3::UnitZ(), side.normal);
+    WallShape shape = make_plane_wall(name, 1.0);
+    for (Vec3& v : shape.mesh.vertices) v = Vec3(v.x() * half[0], v.y() * half[1], 0);
+    add_wall(sim, {std::move(shape), material, {}}, {side.middle, up});
+  }
+};
+
+void declare(Fields& f, BoxInput& in) {
+  in.here = f.here();
+  f.text(required("material"), in.material, "a material of the case");
+  f.vector(required("size"), in.size, Dimension::length, {.above = 0},
+           "inside; the floor is at z = 0, the middle at x = y = 0, the sides go on above the height");
+}
+
+struct MeshWallInput : WallInput {
+  std::filesystem::path file;
+  double unit = 1;
+  Vec3 at = Vec3::Zero();
+
+  void build(const std::string& name, int material_index, Simulation& sim) const override {
+    TriangleMesh mesh = read_mesh(file);
+    for (Vec3& v : mesh.vertices) v *= unit;
+    add_wall(sim, {make_mesh_wall(name, mesh), material_index, {}}, {at, Quat::Identity()});
+  }
+};
+
+void declare(Fields& f, MeshWallInput& in) {
+  in.here = f.here();
+  f.text(required("material"), in.material, "a material of the case");
+  f.path(required("file"), in.file, "STL, OBJ or PLY; stones touch both sides of a facet");
+  f.quantity("unit", in.unit, Dimension::length, {.above = 0}, "length of 1 in the file");
+  f.vector("at", in.at, Dimension::length, {}, "where the file's origin stands");
+}
+
+void declare_body(Fields& f, BodyInput& in) {
+  in.here = f.here();
+  f.text(required("material"), in.material, "a material of the case");
+  f.quantity("mass", in.mass, Dimension::mass, {.above = 0}, "by default volume x density of the material");
+  f.choices("free", in.free, {"x", "y", "z", "turn_x", "turn_y", "turn_z"},
+            "in which directions it may move, about which axes it may turn");
+}
+
+struct BlockInput : BodyInput {
+  Vec3 size = Vec3::Zero();
+
+  TriangleMesh shape() const override { return box_mesh(size); }
+};
+
+void declare(Fields& f, BlockInput& in) {
+  declare_body(f, in);
+  f.vector(required("size"), in.size, Dimension::length, {.above = 0}, "length, width and height");
+}
+
+struct MeshBodyInput : BodyInput {
+  std::filesystem::path file;
+  double unit = 1;
+
+  TriangleMesh shape() const override {
+    TriangleMesh mesh = read_mesh(file);
+    for (Vec3& v : mesh.vertices) v *= unit;
+    return make_solid(mesh, file.filename().string()).mesh;
+  }
+};
+
+void declare(Fields& f, MeshBodyInput& in) {
+  declare_body(f, in);
+  f.path(required("file"), in.file, "closed mesh: STL, OBJ or PLY");
+  f.quantity("unit", in.unit, Dimension::length, {.above = 0}, "length of 1 in the file");
+}
+
+}  // namespace
+
+const Kinds<WallInput>& wall_kinds() {
+  static const Kinds<WallInput> kinds{
+      "wall",
+      {kind_of<WallInput, PlaneInput>("plane", "an unbounded plane"),
+       kind_of<WallInput, BoxInput>("box", "a floor and four sides, open above: the container"),
+       kind_of<WallInput, MeshWallInput>("mesh", "triangles from a file")}};
+  return kinds;
+}
+
+const Kinds<BodyInput>& body_kinds() {
+  static const Kinds<BodyInput> kinds{"body",
+                                      {kind_of<BodyInput, BlockInput>("block", "a cuboid, such as a sleeper"),
+                                       kind_of<BodyInput, MeshBodyInput>("mesh", "a solid from a file")}};
+  return kinds;
+}
+
+}  // namespace trackbed
