@@ -1,14 +1,48 @@
 #include "geom/primitives.h"
 
+#include <cmath>
+#include <map>
+#include <utility>
+
 namespace trackbed {
 
-TriangleMesh box_mesh(const Vec3& size) {
+TriangleMesh box_mesh(const Vec3& size, const Vec3& low) {
   TriangleMesh mesh;
   for (int k = 0; k < 8; ++k)
-    mesh.vertices.emplace_back((k & 1 ? 0.5 : -0.5) * size.x(), (k & 2 ? 0.5 : -0.5) * size.y(),
-                               (k & 4 ? 0.5 : -0.5) * size.z());
-  mesh.facets = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
-                 {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    mesh.vertices.push_back(low + Vec3(k & 1 ? size.x() : 0, k & 2 ? size.y() : 0, k & 4 ? size.z() : 0));
+  mesh.facets = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                 {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+TriangleMesh icosphere(int level, double radius) {
+  const double g = (1 + std::sqrt(5.0)) / 2;
+  TriangleMesh mesh;
+  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  mesh.facets = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                 {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                 {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  for (int k = 0; k < level; ++k) {
+    std::map<std::pair<int, int>, int> midpoints;
+    const auto midpoint = [&](int a, int b) {
+      const auto [found, is_new] =
+          midpoints.try_emplace(std::minmax(a, b), static_cast<int>(mesh.vertices.size()));
+      if (is_new)
+        mesh.vertices.push_back(
+            (mesh.vertices[static_cast<std::size_t>(a)] + mesh.vertices[static_cast<std::size_t>(b)])
+                .normalized());
+      return found->second;
+    };
+    for (Vec3& v : mesh.vertices) v.normalize();
+    std::vector<std::array<int, 3>> finer;
+    for (const auto& [a, b, c] : mesh.facets) {
+      const int ab = midpoint(a, b), bc = midpoint(b, c), ca = midpoint(c, a);
+      finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    }
+    mesh.facets = std::move(finer);
+  }
+  for (Vec3& v : mesh.vertices) v *= radius / v.norm();
   return mesh;
 }
 
