@@ -1,0 +1,41 @@
+// The functions behind the table of measures, by what they look at.
+#pragma once
+
+#include "lab/measure.h"
+
+namespace trackbed {
+
+/// Contacts and pairs of bodies in touch.
+struct ContactCounts {
+  int stone = 0, wall = 0;              // contacts of pebbles, between stones and with walls or bodies
+  int stone_pairs = 0, wall_pairs = 0;  // bodies in touch
+};
+ContactCounts contact_counts(const Simulation& sim);
+
+int pebbles(const Simulation& sim);
+
+/// Share of a sum over the stones; 0 when there is none.
+double per_stone(const Simulation& sim, double sum);
+
+/// Stones that touch fewer than two other bodies: nothing is passed on through them.
+int rattlers(const Simulation& sim);
+
+double mean_contact_force(const Simulation& sim);     ///< magnitude, elastic [N]
+double largest_contact_force(const Simulation& sim);  ///< [N]
+double largest_overlap(const Simulation& sim);        ///< over the smaller stone's equal-volume radius [-]
+
+double solid_volume(const Simulation& sim);  ///< of the stones, overlaps counted twice [m^3]
+double weight(const Simulation& sim);        ///< of stones and bodies [N]
+double median_size(
+    const Simulation& sim);  ///< half of the mass is of stones with a smaller equal-volume diameter
+
+double bed_height(const Simulation& sim);  ///< bed_surface over the whole container [m]
+/// Share of pores in the container up to the bed's surface, bodies below it left out; 1 without stones.
+double porosity(const Simulation& sim);
+/// Part of a body below height z [m^3]; its mesh must be closed.
+double volume_below(const WallShape& shape, const Pose& pose, double z);
+
+/// Forces, moments and motion of one wall or body.
+std::vector<Measure> wall_measures(const Wall& wall, std::size_t index);
+
+}  // namespace trackbed

@@ -1,0 +1,98 @@
+// The table of measures: one row each.
+#include <algorithm>
+#include <iterator>
+
+#include "lab/measures/measures.h"
+
+namespace trackbed {
+namespace {
+
+using Sim = const Simulation&;
+
+std::vector<Measure> stone_measures() {
+  using enum Dimension;
+  return {
+      {"stones", none, "number of stones", [](Sim s) { return s.state.clumps.size(); }},
+      {"pebbles", none, "of all stones", pebbles},
+      {"solid_volume", volume, "of all stones, overlaps counted twice", solid_volume},
+      {"weight", force, "of stones and bodies", weight},
+      {"d50", length, "equal-volume diameter that half of the mass is below", median_size},
+  };
+}
+
+std::vector<Measure> contact_measures() {
+  using enum Dimension;
+  return {
+      {"contacts", none, "touching pebbles: of two stones, and of a stone with a wall or body",
+       [](Sim s) { return contact_counts(s).stone + contact_counts(s).wall; }},
+      {"contacts_stone", none, "touching pebbles of two stones",
+       [](Sim s) { return contact_counts(s).stone; }},
+      {"contacts_wall", none, "touches of pebbles with walls and bodies",
+       [](Sim s) { return contact_counts(s).wall; }},
+      {"pairs", none, "bodies in touch, each pair once however many pebbles touch",
+       [](Sim s) { return contact_counts(s).stone_pairs + contact_counts(s).wall_pairs; }},
+      {"coordination_number", none, "contacts / stones, each contact counted once",
+       [](Sim s) { return per_stone(s, contact_counts(s).stone + contact_counts(s).wall); }},
+      {"coordination_number_stones", none, "contacts_stone / stones, each contact counted once",
+       [](Sim s) { return per_stone(s, contact_counts(s).stone); }},
+      {"contacts_per_stone", none,
+       "mean number of contacts a stone has: (2 contacts_stone + contacts_wall) / stones",
+       [](Sim s) { return per_stone(s, 2 * contact_counts(s).stone + contact_counts(s).wall); }},
+      {"neighbours_per_stone", none, "mean number of bodies that a stone touches",
+       [](Sim s) { return per_stone(s, 2 * contact_counts(s).stone_pairs + contact_counts(s).wall_pairs); }},
+      {"rattlers", none, "stones that touch fewer than two other bodies", rattlers},
+      {"contact_force_mean", force, "magnitude of the elastic contact force, mean of all contacts",
+       mean_contact_force},
+      {"contact_force_max", force, "magnitude of the largest elastic contact force", largest_contact_force},
+      {"largest_overlap", none, "overlap / equal-volume radius of the smaller stone", largest_overlap},
+      {"unbalanced_ratio", none,
+       "sum of unbalanced forces / sum of all forces; below 1e-3 the bed is at rest",
+       [](Sim s) { return unbalanced_ratio(s.model, s.state); }},
+  };
+}
+
+Measure energy(std::string name, std::string meaning, double EnergyBalance::*part) {
+  return {std::move(name), Dimension::energy, std::move(meaning),
+          [part](Sim s) { return energy_of(s.model, s.state).*part; }};
+}
+
+std::vector<Measure> energy_measures() {
+  return {
+      energy("energy_kinetic", "of stones and bodies", &EnergyBalance::kinetic),
+      energy("energy_potential", "of stones and bodies above z = 0", &EnergyBalance::potential),
+      energy("energy_strain", "in the springs of contacts", &EnergyBalance::strain),
+      energy("loss_friction", "heat of sliding since the start", &EnergyBalance::friction_loss),
+      energy("loss_rolling", "heat of rolling since the start", &EnergyBalance::rolling_loss),
+      energy("loss_dashpot", "heat of dashpots since the start", &EnergyBalance::dashpot_loss),
+      energy("loss_damping", "heat of local damping since the start", &EnergyBalance::damping_loss),
+      energy("boundary_work", "of moved walls on the stones since the start", &EnergyBalance::boundary_work),
+      energy("applied_work", "of applied forces on bodies since the start", &EnergyBalance::applied_work),
+      {"energy_total", Dimension::energy,
+       "energies and losses less the works: constant while stones are the same",
+       [](Sim s) { return energy_of(s.model, s.state).total(); }},
+  };
+}
+
+std::vector<Measure> bed_measures() {
+  using enum Dimension;
+  return {
+      {"bed_height", length, "of the bed's surface above z = 0, beside bodies", bed_height},
+      {"porosity", none, "share of pores in the container below the bed's surface, bodies left out",
+       porosity},
+  };
+}
+
+}  // namespace
+
+std::vector<Measure> measures_of(const Simulation& sim) {
+  std::vector<Measure> all;
+  const auto add = [&](std::vector<Measure> more) { std::ranges::move(more, std::back_inserter(all)); };
+  add(stone_measures());
+  add(contact_measures());
+  if (!sim.container.isEmpty()) add(bed_measures());
+  add(energy_measures());
+  for (std::size_t w = 0; w < sim.model.walls.size(); ++w) add(wall_measures(sim.model.walls[w], w));
+  return all;
+}
+
+}  // namespace trackbed
