@@ -62,10 +62,10 @@ Vec3 random_direction(Rng& rng) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-double draw(Rng& rng, const Range& range) {
+double draw(Rng& rng, const Interval& range) {
   return rng.uniform(range.low, range.high);
 }
-int draw_count(Rng& rng, const Range& range) {
+int draw_count(Rng& rng, const Interval& range) {
   return static_cast<int>(std::floor(rng.uniform(range.low, range.high + 1)));
 }
 
@@ -139,7 +139,7 @@ void stretch(TriangleMesh& mesh, double elongation, double flatness) {
 }
 
 void check(const StoneRecipe& r) {
-  const auto fits = [](const Range& range, double low, double high, const char* what) {
+  const auto fits = [](const Interval& range, double low, double high, const char* what) {
     if (!(range.low >= low && range.low <= range.high && range.high <= high))
       throw InputError(
           fmt::format("stone generator: {} must lie from {:g} to {:g}, low before high, not {:g} to {:g}",

@@ -9,20 +9,20 @@
 namespace trackbed {
 
 /// A number drawn evenly between two limits.
-struct Range {
+struct Interval {
   double low, high;
 };
 
 /// What stones are to be like. The defaults give the means of scanned rubble and ballast: sphericity 0.77,
 /// convexity 0.87, I/L 0.71, S/I 0.59.
 struct StoneRecipe {
-  Range faces{15, 40};           // planes that cut the stone out of the rock
-  Range elongation{0.55, 0.87};  // I / L
-  Range flatness{0.42, 0.78};    // S / I
+  Interval faces{15, 40};           // planes that cut the stone out of the rock
+  Interval elongation{0.55, 0.87};  // I / L
+  Interval flatness{0.42, 0.78};    // S / I
   double largest_l_over_s = 3;   // flakier or longer stones are drawn again
-  Range hollows{4, 9};           // shell-shaped scars, as chips leave them; with roughness 0 and none of them
+  Interval hollows{4, 9};           // shell-shaped scars, as chips leave them; with roughness 0 and none of them
                                  // the stone is convex
-  Range hollow_depth{0.08, 0.22};  // in mean radii
+  Interval hollow_depth{0.08, 0.22};  // in mean radii
   double roughness = 0.03;         // amplitude of the uneven surface, in mean radii
   double sieve_size = 1;           // of every stone [m]
 };

@@ -96,7 +96,7 @@ void declare_body(Fields& f, BodyInput& in) {
 struct BlockInput : BodyInput {
   Vec3 size = Vec3::Zero();
 
-  TriangleMesh shape() const override { return box_mesh(size); }
+  TriangleMesh shape() const override { return box_mesh(size, -0.5 * size); }
 };
 
 void declare(Fields& f, BlockInput& in) {

@@ -58,7 +58,7 @@ class Fill : public Stage {
 
   bool finished(const Simulation&) override { return true; }
 
-  std::vector<Result> close(Simulation& sim) override {
+  std::vector<Result> close(Simulation&) override {
     std::vector<Result> results{{"added", static_cast<double>(sizes_.size()), Dimension::none},
                                 {"column_height", column_.sizes().z(), Dimension::length}};
     const std::vector<double> shares = passing(stones_.grading, sizes_);
