@@ -4,7 +4,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <iterator>
 
 #include "base/error.h"
 #include "io/files.h"
@@ -16,7 +15,8 @@ std::string header_of(const std::vector<Column>& columns) {
   std::string line;
   for (const Column& column : columns) {
     if (!line.empty()) line += ',';
-    line += csv_field(fmt::format("{} [{}]", column.name, si_unit_of(column.dimension)));
+    line += csv_field(column.is_text ? column.name
+                                     : fmt::format("{} [{}]", column.name, si_unit_of(column.dimension)));
   }
   return line + '\n';
 }
@@ -65,17 +65,23 @@ CsvWriter CsvWriter::resume(const std::filesystem::path& path, std::vector<Colum
 }
 
 void CsvWriter::add_row(std::span<const double> values) {
-  if (values.size() != n_columns_)
+  add_row(std::vector<Cell>(values.begin(), values.end()));
+}
+
+void CsvWriter::add_row(std::span<const Cell> cells) {
+  if (cells.size() != n_columns_)
     throw std::logic_error(
-        fmt::format("{}: {} values for {} columns", path_.string(), values.size(), n_columns_));
-  fmt::memory_buffer line;
-  for (double value : values) fmt::format_to(std::back_inserter(line), "{},", value);
-  std::string text = fmt::to_string(line);
-  if (text.empty())
-    text = "\n";
-  else
-    text.back() = '\n';
-  write(text);
+        fmt::format("{}: {} values for {} columns", path_.string(), cells.size(), n_columns_));
+  std::string line;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const Cell& cell = cells[k];
+    if (k > 0) line += ',';
+    if (const double* number = std::get_if<double>(&cell))
+      line += fmt::format("{}", *number);
+    else
+      line += csv_field(std::get<std::string_view>(cell));
+  }
+  write(line + '\n');
   ++rows_;
 }
 

@@ -7,6 +7,8 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 #include "base/units.h"
@@ -17,7 +19,11 @@ namespace trackbed {
 struct Column {
   std::string name;
   Dimension dimension = Dimension::none;
+  bool is_text = false;  // holds words: headed by its name alone
 };
+
+/// A number or a word of a table.
+using Cell = std::variant<double, std::string_view>;
 
 /// A field as the CSV rules (RFC 4180) want it: in quotes where it holds a comma, a quote or a line break.
 std::string csv_field(std::string_view text);
@@ -34,6 +40,7 @@ class CsvWriter {
 
   /// As many values as columns. Throws RunError when the disk is full.
   void add_row(std::span<const double> values);
+  void add_row(std::span<const Cell> cells);
   void add_row(std::initializer_list<double> values) { add_row(std::span(values.begin(), values.size())); }
 
   std::size_t rows() const { return rows_; }

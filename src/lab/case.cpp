@@ -145,7 +145,6 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
   m.limits.overlap = in.numerics.overlap_limit;
   m.limits.speed = in.numerics.speed_limit;
   if (!sim.container.isEmpty()) m.limits.domain = sim.container;
-  for (const WallState& wall : sim.state.walls) sim.wall_reference.push_back(wall.pose);
   sim.changed();
   return sim;
 }

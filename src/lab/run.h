@@ -3,11 +3,14 @@
 
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "io/read.h"
 #include "lab/case.h"
+#include "lab/recorder.h"
+#include "lab/summary.h"
 
 namespace trackbed {
 
@@ -18,16 +21,25 @@ struct RunOptions {
   std::FILE* progress = nullptr;  // where the progress line goes; nothing: nowhere
 };
 
-/// What a run left behind.
-struct RunResults {
-  std::vector<Result> measures;
-  std::uint64_t state_hash = 0;
-  double seconds = 0;  // wall time
-  std::filesystem::path out;
+/// A stage ready to run; names are unique within a run.
+struct NamedStage {
+  std::string name, kind;
+  std::unique_ptr<Stage> stage;
 };
 
-/// Runs all stages and writes series.csv, contacts.csv, stones.csv, ParaView files, pictures and summary.json into
-/// options.out. Throws RunError when the run fails; a snapshot of the last state is then in out/failure.
-RunResults run(const Document& document, const CaseInput& experiment, const RunOptions& options);
+/// Runs the stages one after the other, writes down what happens, and what was found into `summary`, which
+/// knows title, input and limits of the histogram. Throws RunError that names the stage; the last state is
+/// then in out/failure.
+void run_stages(Simulation& sim, std::vector<NamedStage>& stages, Recorder& recorder,
+                const RunOptions& options, Summary& summary);
+
+/// The stages of a case; a name that comes again gets a number: "settle", "settle-2".
+std::vector<NamedStage> stages_of(const CaseInput& experiment);
+
+/// Checks and makes all that a run needs, also the names in record.measures. Throws InputError.
+Simulation prepare_run(const Document& document, const CaseInput& experiment);
+
+/// Runs a case and leaves in options.out what recorder.h lists, and summary.json, which is returned.
+Summary run(const Document& document, const CaseInput& experiment, const RunOptions& options);
 
 }  // namespace trackbed

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "lab/in_touch.h"
@@ -78,29 +77,21 @@ class Surface {
   std::vector<bool> covered_;
 };
 
-double lowest_point(const WallShape& shape, const Pose& pose) {
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const Vec3& vertex : shape.mesh.vertices) lowest = std::min(lowest, pose.to_world(vertex).z());
-  return lowest;
-}
-
 }  // namespace
 
 double bed_surface(const Simulation& sim, const Eigen::AlignedBox2d& where) {
   Surface surface(where);
   const Clumps& c = sim.state.clumps;
-  double top = 0;
   for (Index i = 0; i < c.id.size(); ++i) {
     for (const Pebble& pebble : sim.model.templates[static_cast<Index>(c.shape[i])].pebbles) {
       const Vec3 centre = c.position[i] + c.orientation[i] * (c.scale[i] * pebble.centre);
       surface.add_ball(centre, c.scale[i] * pebble.radius);
-      top = std::max(top, centre.z() + c.scale[i] * pebble.radius);
     }
   }
   for (Index w = 0; w < sim.model.walls.size(); ++w) {
     const Wall& wall = sim.model.walls[w];
     const Pose& pose = sim.state.walls[w].pose;
-    if (!wall.body || lowest_point(wall.shape, pose) > top) continue;  // it waits above the bed
+    if (!wall.body || !sim.state.walls[w].present) continue;
     for (Index f = 0; f < wall.shape.mesh.facets.size(); ++f) {
       const auto [a, b, d] = wall.shape.mesh.corners(f);
       surface.cover({pose.to_world(a), pose.to_world(b), pose.to_world(d)});
@@ -118,8 +109,8 @@ double solid_volume(const Simulation& sim) {
 double weight(const Simulation& sim) {
   const std::vector<double>& masses = sim.state.clumps.mass;
   double mass = std::accumulate(masses.begin(), masses.end(), 0.0);
-  for (const Wall& wall : sim.model.walls)
-    if (wall.body) mass += wall.body->mass;
+  for (Index w = 0; w < sim.model.walls.size(); ++w)
+    if (sim.model.walls[w].body && sim.state.walls[w].present) mass += sim.model.walls[w].body->mass;
   return mass * sim.model.gravity.norm();
 }
 
@@ -173,7 +164,7 @@ double porosity(const Simulation& sim) {
   const Eigen::Vector3d size = sim.container.sizes();
   double volume = size.x() * size.y() * (height - floor);
   for (Index w = 0; w < sim.model.walls.size(); ++w)
-    if (sim.model.walls[w].body)
+    if (sim.model.walls[w].body && sim.state.walls[w].present)
       volume -= volume_below(sim.model.walls[w].shape, sim.state.walls[w].pose, height);
   return 1.0 - solid / volume;
 }

@@ -1,0 +1,35 @@
+// ParaView files of a run: stones.pvd, contacts.pvd and walls.pvd, each one time series.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "io/vtk.h"
+#include "lab/simulation.h"
+
+namespace trackbed {
+
+/// Writes frames into a folder. Contacts are lines, one for each two bodies in touch: between the centres of
+/// two stones, or from a stone's centre to where it touches a wall.
+class Paraview {
+ public:
+  /// `stones`: surfaces, pebbles or none. Throws RunError when the folder cannot be written.
+  Paraview(const Model& model, std::filesystem::path folder, std::string stones);
+
+  /// Adds a frame of the present state; replaces the last one when no time has passed (a stage that places
+  /// things).
+  void add_frame(const Simulation& sim);
+
+ private:
+  void add(TimeSeries& series, const char* name, const PolyData& data, bool is_new);
+
+  std::filesystem::path folder_;
+  std::string stones_;
+  std::vector<TriangleMesh> surfaces_;  // of the templates
+  TimeSeries stone_series_, contact_series_, wall_series_;
+  int frame_ = -1;   // the last one written
+  double time_ = 0;  // its time [s]
+};
+
+}  // namespace trackbed

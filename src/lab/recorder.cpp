@@ -1,0 +1,140 @@
+#include "lab/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "io/files.h"
+#include "io/nearest.h"
+#include "lab/picture_of_bed.h"
+
+namespace trackbed {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::array general_columns{"contacts", "energy_kinetic", "energy_total"};
+constexpr std::array wall_columns{".force_", ".moment_", ".displacement_"};
+
+bool is_column_by_default(const std::string& name) {
+  const auto contains = [&](const char* part) { return name.find(part) != std::string::npos; };
+  return std::ranges::find(general_columns, name) != general_columns.end() ||
+         std::ranges::any_of(wall_columns, contains);
+}
+
+std::vector<Column> series_columns(const std::vector<Measure>& measures) {
+  std::vector<Column> columns{
+      {"time", Dimension::time}, {"stage", Dimension::none, true}, {"step"}, {"dt", Dimension::time}};
+  for (const Measure& m : measures) columns.push_back({m.name, m.dimension});
+  return columns;
+}
+
+/// The first multiple of `every` after `time`.
+double next_after(double time, double every) {
+  const double next = (std::floor(time / every) + 1) * every;
+  return next > time ? next : next + every;
+}
+
+}  // namespace
+
+std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Measure& m : measures_of(sim)) known.push_back(m.name);
+  if (std::ranges::find(known, name) != known.end()) return std::nullopt;
+  known = by_distance(name, known);
+  known.resize(std::min<std::size_t>(known.size(), 6));
+  return known_words(name, known) + "; trackbed describe measures lists all";
+}
+
+std::vector<Measure> series_measures(const Simulation& sim, const std::vector<std::string>& further) {
+  const std::vector<Measure> all = measures_of(sim);
+  std::vector<Measure> chosen;
+  std::ranges::copy_if(all, std::back_inserter(chosen), is_column_by_default, &Measure::name);
+  for (const std::string& name : further) {
+    if (const auto hint = hint_for_measure(sim, name))
+      throw InputError(fmt::format("there is no measure called {}\n  hint: {}", name, *hint));
+    if (std::ranges::find(chosen, name, &Measure::name) == chosen.end())
+      chosen.push_back(*std::ranges::find(all, name, &Measure::name));
+  }
+  return chosen;
+}
+
+std::string file_name_of(const std::string& stage) {
+  std::string name = stage;
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
+  return name;
+}
+
+Recorder::Recorder(const Simulation& sim, RecordInput record, fs::path folder)
+    : record_(std::move(record)),
+      folder_(std::move(folder)),
+      measures_(series_measures(sim, record_.measures)),
+      series_(folder_ / "series.csv", series_columns(measures_)),
+      paraview_(sim.model, folder_ / "paraview", record_.paraview_stones),
+      row_due_(next_after(sim.state.time, record_.every)),
+      frame_due_(record_.paraview_every ? next_after(sim.state.time, *record_.paraview_every)
+                                        : std::numeric_limits<double>::infinity()) {}
+
+void Recorder::open_stage(const Simulation& sim) {
+  places_ = places_of(sim.state);
+}
+
+void Recorder::after_step(const Simulation& sim) {
+  const double time = sim.state.time;
+  if (time >= row_due_) {
+    add_row(sim);
+    row_due_ = next_after(time, record_.every);
+  }
+  if (time >= frame_due_) {
+    paraview_.add_frame(sim);
+    frame_due_ = next_after(time, *record_.paraview_every);
+  }
+}
+
+void Recorder::close_stage(const Simulation& sim) {
+  if (row_step_ != sim.state.step || row_stage_ != sim.stage) add_row(sim);
+  paraview_.add_frame(sim);
+  if (record_.tables) write_tables(sim);
+  if (record_.picture) draw_pictures(sim);
+}
+
+void Recorder::add_row(const Simulation& sim) {
+  std::vector<Cell> row{sim.state.time, std::string_view(sim.stage), double(sim.state.step), sim.state.dt};
+  for (const Measure& m : measures_) row.emplace_back(m.value(sim));
+  series_.add_row(row);
+  row_step_ = sim.state.step;
+  row_stage_ = sim.stage;
+}
+
+void Recorder::write_tables(const Simulation& sim) const {
+  const std::string stage = file_name_of(sim.stage);
+  write_contacts(sim, folder_ / (stage + "-contacts.csv"));
+  write_stones(sim, places_, folder_ / (stage + "-stones.csv"));
+  for (const char* table : {"contacts.csv", "stones.csv"})
+    write_file(folder_ / table, read_file(folder_ / fmt::format("{}-{}", stage, table)));
+}
+
+void Recorder::draw_pictures(const Simulation& sim) const {
+  const std::string stage = file_name_of(sim.stage);
+  draw_bed(sim, folder_ / (stage + ".png"));
+  draw_forces(sim, folder_ / (stage + "-forces.png"));
+  write_file(folder_ / "bed.png", read_file(folder_ / (stage + ".png")));
+  write_file(folder_ / "forces.png", read_file(folder_ / (stage + "-forces.png")));
+}
+
+fs::path Recorder::write_failure(const Simulation& sim) const {
+  const fs::path folder = folder_ / "failure";
+  Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim);
+  write_contacts(sim, folder / "contacts.csv");
+  write_stones(sim, places_, folder / "stones.csv");
+  return folder;
+}
+
+}  // namespace trackbed

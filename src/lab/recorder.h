@@ -1,0 +1,64 @@
+// What a run leaves in its folder while it goes on:
+//
+//   series.csv              a row every record.every of simulated time and at the end of each stage
+//   STAGE-contacts.csv      every contact at the end of the stage; contacts.csv is that of the last stage
+//   STAGE-stones.csv        every stone at the end of the stage; stones.csv is that of the last stage
+//   STAGE.png, STAGE-forces.png, bed.png, forces.png   likewise: the bed, and the forces in it
+//   paraview/*.pvd          a frame at the end of each stage, and every record.paraview_every
+//   failure/                tables and a ParaView frame of the last state of a run that failed
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/csv.h"
+#include "lab/case.h"
+#include "lab/measure.h"
+#include "lab/paraview.h"
+#include "lab/tables.h"
+
+namespace trackbed {
+
+/// The measures of series.csv: some general ones, forces, moments and displacements of every wall and body,
+/// and those of `further` by name. Throws InputError for a name that is no measure, with the nearest.
+std::vector<Measure> series_measures(const Simulation& sim, const std::vector<std::string>& further);
+
+/// What the user may have meant by a name; nothing when it is a measure.
+std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name);
+
+/// Stage names as parts of file names: letters, digits, point and dash stay.
+std::string file_name_of(const std::string& stage);
+
+class Recorder {
+ public:
+  Recorder(const Simulation& sim, RecordInput record, std::filesystem::path folder);
+
+  /// To be called after a stage was opened: displacements of stones are counted from here.
+  void open_stage(const Simulation& sim);
+  /// After each step: writes what is due.
+  void after_step(const Simulation& sim);
+  /// After the last step of a stage.
+  void close_stage(const Simulation& sim);
+
+  /// Writes the last state of a run that failed into the folder `failure`, which is returned.
+  std::filesystem::path write_failure(const Simulation& sim) const;
+
+ private:
+  void add_row(const Simulation& sim);
+  void write_tables(const Simulation& sim) const;
+  void draw_pictures(const Simulation& sim) const;
+
+  RecordInput record_;
+  std::filesystem::path folder_;
+  std::vector<Measure> measures_;
+  CsvWriter series_;
+  Paraview paraview_;
+  StonePlaces places_;          // of the stones when the stage was opened
+  double row_due_, frame_due_;  // [s]
+  std::int64_t row_step_ = -1;  // of the last row
+  std::string row_stage_;
+};
+
+}  // namespace trackbed

@@ -1,0 +1,21 @@
+// The shapes that pictures and ParaView show: fine enough for the eye, no finer.
+#pragma once
+
+#include <vector>
+
+#include "io/vtk.h"
+#include "lab/simulation.h"
+
+namespace trackbed {
+
+/// A surface for each template, in its frame at scale 1: the stone's mesh, merged to some hundred facets
+/// where it is a fine scan; for a template without mesh its pebbles as balls.
+std::vector<TriangleMesh> shown_surfaces(const Model& model);
+
+/// The stones where they are; `surfaces` must live as long.
+std::vector<PosedMesh> posed_stones(const State& state, const std::vector<TriangleMesh>& surfaces);
+
+/// The mesh with all vertices of each cubic cell merged into one at their mean.
+TriangleMesh merge_vertices(const TriangleMesh& mesh, double cell);
+
+}  // namespace trackbed
