@@ -14,6 +14,7 @@ struct SettleInput : StageInput {
   double time_limit = 10;          // [s]
   std::optional<double> friction;  // during this stage
   std::optional<double> damping;   // during this stage
+  std::optional<double> gravity;   // during this stage [m/s^2]
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
@@ -25,6 +26,8 @@ void declare(Fields& f, SettleInput& in) {
   f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
            "upper bound on the friction of all contacts during this stage: low values make a denser bed");
   f.number("damping", in.damping, {.at_least = 0, .below = 1}, "local damping during this stage");
+  f.quantity("gravity", in.gravity, Dimension::acceleration, {.above = 0},
+             "raised gravity during this stage, in its usual direction: stones fall and pack faster");
 }
 
 class Settle : public Stage {
@@ -35,6 +38,8 @@ class Settle : public Stage {
     start_ = sim.state.time;
     pairs_ = sim.model.pairs;
     damping_ = sim.model.local_damping;
+    gravity_ = sim.model.gravity;
+    if (in_.gravity) sim.model.gravity = *in_.gravity * gravity_.normalized();
     if (in_.damping) sim.model.local_damping = *in_.damping;
     if (!in_.friction) return;
     PairTable& pairs = sim.model.pairs;
@@ -56,16 +61,19 @@ class Settle : public Stage {
   }
 
   std::vector<Result> close(Simulation& sim) override {
+    const double ratio = unbalanced_ratio(sim.model, sim.state);
     sim.model.pairs = pairs_;
     sim.model.local_damping = damping_;
+    sim.model.gravity = gravity_;
     return {{"time", sim.state.time - start_, Dimension::time},
-            {"unbalanced_ratio", unbalanced_ratio(sim.model, sim.state), Dimension::none}};
+            {"unbalanced_ratio", ratio, Dimension::none}};
   }
 
  private:
   static constexpr int look_every = 50, looks_needed = 5;
   SettleInput in_;
   double start_ = 0, damping_ = 0;
+  Vec3 gravity_ = Vec3::Zero();
   PairTable pairs_;
   int calm_ = 0;
 };
