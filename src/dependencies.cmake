@@ -2,8 +2,12 @@
 find_package(fmt REQUIRED)
 target_link_libraries(trackbed_base PUBLIC fmt::fmt)
 
+find_package(CGAL 5.5 REQUIRED)
+target_link_libraries(trackbed_geom PRIVATE CGAL::CGAL)
+
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(ZLIB REQUIRED)
-target_link_libraries(trackbed_io PUBLIC nlohmann_json::nlohmann_json PRIVATE ZLIB::ZLIB)
+find_package(PNG REQUIRED)
+target_link_libraries(trackbed_io PUBLIC nlohmann_json::nlohmann_json PRIVATE ZLIB::ZLIB PNG::PNG)
 # toml++ (headers only) sits behind this one file; its assertions would abort on some broken input.
 set_source_files_properties(io/toml.cpp PROPERTIES COMPILE_OPTIONS -DNDEBUG)
