@@ -88,7 +88,7 @@ double hole_side(const Shadow&, const Vec2& sides) {
 }
 
 /// Tries a direction at even steps of the turn, then closes in on the best by halving the step.
-void try_direction(const Vec3& direction, const std::vector<Vec3>& points, Measure measure, Best& best) {
+Best best_turn(const Vec3& direction, const std::vector<Vec3>& points, Measure measure) {
   const Shadow shadow = shadow_along(direction, points);
   constexpr int steps = 24;  // over a quarter turn, after which the rectangle repeats
   Best here;
@@ -108,7 +108,7 @@ void try_direction(const Vec3& direction, const std::vector<Vec3>& points, Measu
     try_angle(middle - step);
     try_angle(middle + step);
   }
-  if (here.value < best.value) best = here;
+  return here;
 }
 
 /// Evenly spread over half a sphere (Fibonacci lattice), and the axes given.
@@ -123,16 +123,32 @@ std::vector<Vec3> directions_to_try(const Mat3& axes) {
   return directions;
 }
 
-Best least(const std::vector<Vec3>& directions, const std::vector<Vec3>& points, Measure measure) {
-  Best best;
-  for (const Vec3& direction : directions) try_direction(direction, points, measure, best);
-  for (double step = 0.1; step > 1e-4; step /= 2) {
-    const Shadow around = shadow_along(best.direction, points);
+/// Closes in on the best direction near a start by halving the step.
+Best refine(Best best, const std::vector<Vec3>& points, Measure measure) {
+  for (double step = 0.1; step > 1e-4;) {
+    const double before = best.value;
+    const Vec3 middle = best.direction.normalized(), u = middle.unitOrthogonal(), v = middle.cross(u);
     for (int k = 0; k < 6; ++k) {
-      const Vec3 aside =
-          std::cos(k * pi / 3) * around.frame.col(0) + std::sin(k * pi / 3) * around.frame.col(1);
-      try_direction(around.frame.col(2) + step * aside, points, measure, best);
+      const double angle = k * pi / 3 + step * 40;  // not along the same lines at every step
+      const Best there =
+          best_turn(middle + step * (std::cos(angle) * u + std::sin(angle) * v), points, measure);
+      if (there.value < best.value) best = there;
     }
+    if (best.value >= before * (1 - 1e-3)) step /= 2;
+  }
+  return best;
+}
+
+Best least(const std::vector<Vec3>& directions, const std::vector<Vec3>& points, Measure measure) {
+  constexpr std::size_t starts = 4;
+  std::vector<Best> tried;
+  for (const Vec3& direction : directions) tried.push_back(best_turn(direction, points, measure));
+  std::stable_sort(tried.begin(), tried.end(),
+                   [](const Best& a, const Best& b) { return a.value < b.value; });
+  Best best = tried.front();
+  for (std::size_t k = 0; k < std::min(starts, tried.size()); ++k) {
+    const Best refined = refine(tried[k], points, measure);
+    if (refined.value < best.value) best = refined;
   }
   return best;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -40,20 +41,34 @@ struct RadialStone {
   std::vector<Hollow> hollows;
   std::vector<Wave> waves;
 
-  double radius(const Vec3& direction) const {
-    double r = std::numeric_limits<double>::infinity();
-    for (const Plane& p : planes) {
-      const double slope = p.normal.dot(direction);
-      if (slope > 1e-9) r = std::min(r, p.offset / slope);
+  /// Where a ray from the middle leaves the stone, and through which of its faces.
+  struct Exit {
+    double radius = std::numeric_limits<double>::infinity();
+    std::size_t face = 0;  // plane, or plane count + hollow
+    Vec3 normal = Vec3::Zero();
+  };
+  Exit exit(const Vec3& direction) const {
+    Exit exit;
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+      const double slope = planes[k].normal.dot(direction);
+      if (slope > 1e-9 && planes[k].offset < exit.radius * slope)
+        exit = {planes[k].offset / slope, k, planes[k].normal};
     }
-    for (const Hollow& h : hollows) {  // the near side of the ball, if the direction meets it
+    for (std::size_t k = 0; k < hollows.size(); ++k) {  // the near side of the ball, if the ray meets it
+      const Hollow& h = hollows[k];
       const double along = h.centre.dot(direction);
       const double root = along * along - h.centre.squaredNorm() + h.radius * h.radius;
-      if (along > 0 && root > 0) r = std::min(r, along - std::sqrt(root));
+      const double r = along - std::sqrt(std::max(root, 0.0));
+      if (along > 0 && root > 0 && r < exit.radius)
+        exit = {r, planes.size() + k, (h.centre - r * direction).normalized()};
     }
+    return exit;
+  }
+
+  double radius(const Vec3& direction) const {
     double uneven = 1;
     for (const Wave& w : waves) uneven += w.amplitude * std::cos(w.number.dot(direction) + w.phase);
-    return r * uneven;
+    return uneven * exit(direction).radius;
   }
 };
 
@@ -94,7 +109,7 @@ RadialStone draw_stone(Rng& rng, const StoneRecipe& recipe) {
   for (int k = 0; k < hollows; ++k) {
     const Vec3 direction = random_direction(rng);
     const double radius = rng.uniform(0.5, 1.3), depth = draw(rng, recipe.hollow_depth);
-    stone.hollows.push_back({(stone.radius(direction) - depth + radius) * direction, radius});
+    stone.hollows.push_back({(stone.exit(direction).radius - depth + radius) * direction, radius});
   }
   if (recipe.roughness > 0) {
     for (int k = 0; k < waves; ++k) {
@@ -120,8 +135,53 @@ TriangleMesh polyhedron(const std::vector<RadialStone::Plane>& planes) {
   return convex_hull(corners);
 }
 
+std::vector<std::vector<std::size_t>> facets_around_vertices(const TriangleMesh& mesh) {
+  std::vector<std::vector<std::size_t>> around(mesh.vertices.size());
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f)
+    for (int corner : mesh.facets[f]) around[static_cast<std::size_t>(corner)].push_back(f);
+  return around;
+}
+
+/// Moves vertices of the unit sphere to where an edge or corner of the stone will pass beside them, so that
+/// edges are not jagged: to the point nearest to the planes that touch the faces seen by the vertex and its
+/// neighbours. No facet may shrink to less than a third of its solid angle, so none turns over.
+void move_to_edges(TriangleMesh& sphere, const RadialStone& stone) {
+  const auto around = facets_around_vertices(sphere);
+  std::vector<RadialStone::Exit> exits;
+  for (const Vec3& v : sphere.vertices) exits.push_back(stone.exit(v));
+  const auto size = [&](std::size_t f) {
+    const auto [a, b, c] = sphere.corners(f);
+    return a.dot(b.cross(c));
+  };
+  std::vector<double> least(sphere.facets.size());
+  for (std::size_t f = 0; f < least.size(); ++f) least[f] = size(f) / 3;
+
+  for (std::size_t v = 0; v < sphere.vertices.size(); ++v) {
+    const Vec3 place = sphere.vertices[v], here = exits[v].radius * place;
+    Mat3 matrix = 0.02 * Mat3::Identity();
+    Vec3 vector = Vec3::Zero();
+    std::vector<std::size_t> faces;
+    for (std::size_t f : around[v]) {
+      for (int corner : sphere.facets[f]) {
+        const auto k = static_cast<std::size_t>(corner);
+        const auto& exit = exits[k];
+        if (std::find(faces.begin(), faces.end(), exit.face) != faces.end()) continue;
+        faces.push_back(exit.face);
+        matrix += exit.normal * exit.normal.transpose();
+        vector += exit.normal * exit.normal.dot(exit.radius * sphere.vertices[k] - here);
+      }
+    }
+    if (faces.size() < 2) continue;
+    sphere.vertices[v] = (here + matrix.ldlt().solve(vector)).normalized();
+    for (std::size_t f : around[v])
+      if (size(f) < least[f]) sphere.vertices[v] = place;
+    exits[v] = stone.exit(sphere.vertices[v]);
+  }
+}
+
 TriangleMesh radial_mesh(const RadialStone& stone) {
   TriangleMesh mesh = icosphere(mesh_level, 1);
+  move_to_edges(mesh, stone);
   for (Vec3& v : mesh.vertices) v *= stone.radius(v);
   return mesh;
 }

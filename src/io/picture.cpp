@@ -16,7 +16,7 @@ namespace {
 float brightness(const Vec3& normal) {
   static const Vec3 lamp = Vec3(-0.45, -0.75, 0.65).normalized();
   const double sky = 0.5 - 0.5 * normal.y();  // surfaces that look up get more of the even light
-  return static_cast<float>(std::min(1.0, 0.30 + 0.20 * sky + 0.62 * std::max(0.0, normal.dot(lamp))));
+  return static_cast<float>(std::min(1.0, 0.27 + 0.18 * sky + 0.53 * std::max(0.0, normal.dot(lamp))));
 }
 
 }  // namespace
