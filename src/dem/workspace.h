@@ -38,21 +38,23 @@ struct WallGeometry {
   std::vector<int> facets;
 };
 
-/// What the contacts of one clump pair did in this step. Moments about the centres of mass.
+/// What the contacts of one clump pair did in this step; nothing until they are looked at. Moments about the
+/// centres of mass.
 struct PairResult {
-  Vec3 force;               // on clump j, and the opposite on i [N]
-  Vec3 moment_i, moment_j;  // [N m]
-  Losses losses;            // [J]
-  int contacts;             // touching
+  Vec3 force = Vec3::Zero();     // on clump j, and the opposite on i [N]
+  Vec3 moment_i = Vec3::Zero();  // [N m]
+  Vec3 moment_j = Vec3::Zero();  // [N m]
+  Losses losses;                 // [J]
+  int contacts = 0;              // touching
 };
 
 /// The same for a clump and a wall.
 struct WallResult {
-  Vec3 force;        // on the wall [N]
-  Vec3 moment_clump; // on the clump about its centre of mass [N m]
-  Vec3 moment_wall;  // on the wall about its frame's origin [N m]
+  Vec3 force = Vec3::Zero();         // on the wall [N]
+  Vec3 moment_clump = Vec3::Zero();  // on the clump about its centre of mass [N m]
+  Vec3 moment_wall = Vec3::Zero();   // on the wall about its frame's origin [N m]
   Losses losses;
-  int contacts;
+  int contacts = 0;
 };
 
 /// Seconds spent since the start, for the profile.
