@@ -10,7 +10,8 @@ namespace {
 
 using Index = std::size_t;
 
-// A pair is looked through again when less than this share of its skin is left, rather than measured each step.
+// A pair is looked through again when less than this share of its skin is left, rather than measured each
+// step.
 constexpr double nearly_used_up = 0.25;
 
 /// Pose of one body in the frame of another.
@@ -55,7 +56,11 @@ Scratch& scratch() {
   return memory;
 }
 
-/// Pebble pairs of two clumps with less than the skin between them, ascending by key.
+bool is_before(const PebblePair& x, const PebblePair& y) {
+  return x.a != y.a ? x.a < y.a : x.b < y.b;
+}
+
+/// Pebble pairs of two clumps with less than the skin between them, in the order of the walk.
 void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj, double sj,
                      const Relative& pose, double skin, Scratch& s) {
   s.found.clear();
@@ -90,12 +95,26 @@ void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj
       s.stack.emplace_back(a, b + 1);
     }
   }
-  std::sort(s.found.begin(), s.found.end(), [](const Found& x, const Found& y) {
-    return x.key.a != y.key.a ? x.key.a < y.key.a : x.key.b < y.key.b;
-  });
 }
 
-bool is_before(const PebblePair& x, const PebblePair& y) { return x.a != y.a ? x.a < y.a : x.b < y.b; }
+/// Adds the candidates that touched in the last step, however far they are now: their contacts have yet to be
+/// ended, and their energy booked. Sorts all by key.
+void keep_touching(const PairBlock& block, const ClumpPair& p, const Model& model, const Clumps& c,
+                   Scratch& s) {
+  const Index i = static_cast<Index>(p.i), j = static_cast<Index>(p.j);
+  for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k) {
+    if (!block.memory[k].touches()) continue;
+    const PebblePair key = block.keys[k];
+    const Pebble& a = model.templates[static_cast<Index>(c.shape[i])].pebbles[static_cast<Index>(key.a)];
+    const Pebble& b = model.templates[static_cast<Index>(c.shape[j])].pebbles[static_cast<Index>(key.b)];
+    s.found.push_back(
+        {key, c.scale[i] * a.centre, c.scale[j] * b.centre, c.scale[i] * a.radius, c.scale[j] * b.radius});
+  }
+  std::sort(s.found.begin(), s.found.end(),
+            [](const Found& x, const Found& y) { return is_before(x.key, y.key); });
+  const auto same = [](const Found& x, const Found& y) { return x.key.a == y.key.a && x.key.b == y.key.b; };
+  s.found.erase(std::unique(s.found.begin(), s.found.end(), same), s.found.end());
+}
 
 /// Puts the found candidates in the place of the pair's old ones; touching contacts keep their memory.
 void replace_candidates(Index pair, Scratch& s, PairBlock& block, PairGeometry& geometry) {
@@ -156,8 +175,8 @@ void append_near_facets(const WallShape& shape, const Vec3& centre, double radiu
 }
 
 /// Pebbles of a clump with less than the skin to the wall. `wall` is the wall's pose in the clump's frame.
-void find_wall_candidates(const ClumpTemplate& shape, double scale, const WallShape& wall, const Relative& pose,
-                          double skin, Scratch& s) {
+void find_wall_candidates(const ClumpTemplate& shape, double scale, const WallShape& wall,
+                          const Relative& pose, double skin, Scratch& s) {
   s.wall_candidates.clear();
   s.wall_keys.clear();
   s.facets.clear();
@@ -226,6 +245,7 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
       // Too far to touch before they have come nearer by that much.
       if (block.pairs[k].count > 0) {
         scratch().found.clear();
+        keep_touching(block, block.pairs[k], model, state.clumps, scratch());
         replace_candidates(k, scratch(), block, geometry);
       }
       search = {now.offset, now.turn, apart, travel + apart};
@@ -234,6 +254,7 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
     const Clumps& c = state.clumps;
     find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
                     model.templates[static_cast<Index>(c.shape[j])], c.scale[j], now, work.skin, scratch());
+    keep_touching(block, block.pairs[k], model, c, scratch());
     replace_candidates(k, scratch(), block, geometry);
     search = {now.offset, now.turn, work.skin, travel + work.skin};
   }
@@ -288,15 +309,31 @@ void refresh(const Model& model, const State& state, const Workspace& work, Wall
     Index old = static_cast<Index>(p.first);
     const Index old_end = old + static_cast<Index>(p.count);
     p.first = static_cast<int>(keys.size());
-    p.count = static_cast<int>(s.wall_keys.size());
+    // A pebble that touched in the last step stays, however far it is now: its contact has yet to be ended.
+    const auto keep_touching = [&] {
+      const WallMemory& kept = block.memory[old];
+      const auto touches = [](const ContactMemory& m) { return m.touches(); };
+      if (std::any_of(kept.points.begin(), kept.points.end(), touches)) {
+        const Index shape = static_cast<Index>(state.clumps.shape[c]);
+        const Pebble& pebble = model.templates[shape].pebbles[static_cast<Index>(block.keys[old])];
+        const double scale = state.clumps.scale[c];
+        memory.push_back(kept);
+        keys.push_back(block.keys[old]);
+        candidates.push_back({scale * pebble.centre, scale * pebble.radius, 0, 0});
+      }
+      ++old;
+    };
     for (Index m = 0; m < s.wall_keys.size(); ++m) {
-      while (old < old_end && block.keys[old] < s.wall_keys[m]) ++old;
-      memory.push_back(old < old_end && block.keys[old] == s.wall_keys[m] ? block.memory[old] : WallMemory{});
+      while (old < old_end && block.keys[old] < s.wall_keys[m]) keep_touching();
+      const bool is_known = old < old_end && block.keys[old] == s.wall_keys[m];
+      memory.push_back(is_known ? block.memory[old++] : WallMemory{});
       keys.push_back(s.wall_keys[m]);
       WallCandidate candidate = s.wall_candidates[m];
       candidate.first_facet += static_cast<int>(facets.size());
       candidates.push_back(candidate);
     }
+    while (old < old_end) keep_touching();
+    p.count = static_cast<int>(keys.size()) - p.first;
     facets.insert(facets.end(), s.facets.begin(), s.facets.end());
   }
   block.keys = std::move(keys);

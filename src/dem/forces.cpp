@@ -140,8 +140,8 @@ struct WallFrame {
   Vec3 shift;                                // clump to wall origin, world
 };
 
-/// Unit vector from the pebble to the wall. A plane is only ever met from above; with the centre on a facet the
-/// pebble is taken to come from the facet's front.
+/// Unit vector from the pebble to the wall. A plane is only ever met from above; with the centre on a facet
+/// the pebble is taken to come from the facet's front.
 Vec3 towards_wall(const WallShape& shape, const WallPoint& q, const Vec3& centre, double radius) {
   if (shape.is_plane) return {0, 0, -1};
   if (q.distance > 1e-12 * radius) return (q.point - centre) / q.distance;
@@ -158,8 +158,8 @@ void touch_wall(const Model& model, const State& state, const WallFrame& f, cons
   const ContactProperties& p = model.pairs(state.clumps.material[c], model.walls[w].material);
   const Vec3 centre = f.offset + f.turn * candidate.centre;
   WallPoints points;
-  const int n =
-      touching_points(shape, facets + candidate.first_facet, candidate.n_facets, centre, candidate.radius, points);
+  const int n = touching_points(shape, facets + candidate.first_facet, candidate.n_facets, centre,
+                                candidate.radius, points);
 
   WallMemory now;
   for (int m = 0; m < n; ++m) {
@@ -220,15 +220,17 @@ void block_forces(const Model& model, State& state, Workspace& work, Index b, do
     const ClumpPair& pair = block.pairs[k];
     PairResult& result = work.pair_results[b * PairBlock::capacity + k];
     if (pair.count == 0) {
-      if (result.contacts > 0 || result.losses.friction > 0) result = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), {}, 0};
+      if (result.contacts > 0 || result.losses.friction + result.losses.rolling > 0)
+        result = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), {}, 0};
       continue;
     }
     const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
     const ContactProperties& p = model.pairs(state.clumps.material[i], state.clumps.material[j]);
     const PairFrame f = frame_of(state, work, i, j, dt);
     with_law(p.law, [&]<class Law>() {
-      result = pair_forces<Law>(f, p, &geometry.columns_of_pairs[static_cast<Index>(pair.first) * PairGeometry::columns],
-                                pair.count, &block.memory[static_cast<Index>(pair.first)]);
+      result = pair_forces<Law>(
+          f, p, &geometry.columns_of_pairs[static_cast<Index>(pair.first) * PairGeometry::columns],
+          pair.count, &block.memory[static_cast<Index>(pair.first)]);
     });
   }
 }
@@ -280,10 +282,12 @@ void gather_wall(const Model& model, State& state, const Workspace& work, Index 
     force += work.wall_results[static_cast<Index>(p)].force;
     moment += work.wall_results[static_cast<Index>(p)].moment_wall;
   }
-  // Work done on the stones by a wall that is moved, with the mean of the reactions before and after the step.
+  // Work done on the stones by a wall that is moved, with the mean of the reactions before and after the
+  // step.
   if (!model.walls[w].body)
-    wall.boundary_work -= 0.5 * dt * ((wall.force + force).dot(wall.velocity) +
-                                      (wall.moment + moment).dot(wall.angular_velocity));
+    wall.boundary_work -=
+        0.5 * dt *
+        ((wall.force + force).dot(wall.velocity) + (wall.moment + moment).dot(wall.angular_velocity));
   wall.force = force;
   wall.moment = moment;
 }

@@ -26,28 +26,35 @@ double volume_radius(const Model& model, const Clumps& c, Index i) {
   return std::cbrt(volume * 3.0 / (4.0 * M_PI));
 }
 
-/// Rate at t of a quantity whose rate is known at t - dt/2, with the damped force of the half step to come.
-Vec3 half_kicked(const Vec3& rate, const Vec3& unbalanced, const Vec3& inertia, double alpha, double half) {
-  return rate + half * damped(unbalanced, rate, alpha).cwiseQuotient(inertia);
+/// Rate at t of a quantity whose rate is known at t - dt/2, with the damped force of the half step to come;
+/// `lost` gains what damping takes meanwhile.
+Vec3 half_kicked(const Vec3& rate, const Vec3& unbalanced, const Vec3& inertia, double alpha, double half,
+                 double& lost) {
+  const Vec3 force = damped(unbalanced, rate, alpha);
+  const Vec3 after = rate + half * force.cwiseQuotient(inertia);
+  lost += 0.5 * half * (unbalanced - force).dot(rate + after);
+  return after;
 }
 
-double kinetic_energy(const Model& model, const State& state, Index i) {
+double kinetic_energy(const Model& model, const State& state, Index i, double& lost) {
   const Clumps& c = state.clumps;
   const double half = 0.5 * state.dt;
   const Vec3 v = half_kicked(c.velocity[i], c.force[i] + c.mass[i] * model.gravity, Vec3::Constant(c.mass[i]),
-                             model.local_damping, half);
+                             model.local_damping, half, lost);
   const Mat3 r = c.orientation[i].toRotationMatrix();
   const Vec3 spin = (r.transpose() * c.angular_momentum[i]).cwiseQuotient(c.inertia[i]);
-  const Vec3 w = half_kicked(spin, r.transpose() * c.moment[i], c.inertia[i], model.local_damping, half);
+  const Vec3 w =
+      half_kicked(spin, r.transpose() * c.moment[i], c.inertia[i], model.local_damping, half, lost);
   return 0.5 * (c.mass[i] * v.squaredNorm() + c.inertia[i].dot(w.cwiseAbs2()));
 }
 
-double kinetic_energy(const Model& model, const BodyProperties& body, const WallState& wall, double dt) {
+double kinetic_energy(const Model& model, const BodyProperties& body, const WallState& wall, double dt,
+                      double& lost) {
   Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
   for (int a = 0; a < 3; ++a)
     if (!body.free_shift[static_cast<Index>(a)]) unbalanced[a] = 0;
   const Vec3 v =
-      half_kicked(wall.velocity, unbalanced, Vec3::Constant(body.mass), model.local_damping, 0.5 * dt);
+      half_kicked(wall.velocity, unbalanced, Vec3::Constant(body.mass), model.local_damping, 0.5 * dt, lost);
   const Mat3 r = wall.pose.orientation.toRotationMatrix();
   const Vec3 w = r.transpose() * wall.angular_velocity;
   return 0.5 * (body.mass * v.squaredNorm() + body.inertia.dot(w.cwiseAbs2()));
@@ -64,15 +71,16 @@ void inspect(const Model& model, const State& state, const Workspace& work) {
       fail(state, i, "a position, velocity or force is not a number: the run has blown up");
     const double speed = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
     if (speed > limits.speed)
-      fail(state, i, fmt::format("moves at {:.4g} m/s, above the limit of {:.4g} m/s: the run has blown up", speed,
-                                 limits.speed));
+      fail(state, i,
+           fmt::format("moves at {:.4g} m/s, above the limit of {:.4g} m/s: the run has blown up", speed,
+                       limits.speed));
     if (!limits.domain.isEmpty() && !limits.domain.contains(c.position[i]))
       fail(state, i, "has left the container");
   }
   for (const WallState& wall : state.walls)
     if (!wall.pose.position.allFinite() || !wall.velocity.allFinite())
-      throw RunError(fmt::format("step {}, t = {:.6g} s: the motion of a wall or body is not a number", state.step,
-                                 state.time));
+      throw RunError(fmt::format("step {}, t = {:.6g} s: the motion of a wall or body is not a number",
+                                 state.step, state.time));
   visit_touching(model, state, [&](const Touching& t) {
     double radius = volume_radius(model, c, static_cast<Index>(t.clump_1));
     if (t.clump_2 >= 0) radius = std::min(radius, volume_radius(model, c, static_cast<Index>(t.clump_2)));
@@ -81,8 +89,8 @@ void inspect(const Model& model, const State& state, const Workspace& work) {
         t.clump_2 >= 0 ? fmt::format("stone {}", c.id[static_cast<Index>(t.clump_2)])
                        : fmt::format("wall {}", model.walls[static_cast<Index>(t.wall)].shape.name);
     fail(state, static_cast<Index>(t.clump_1),
-         fmt::format("overlaps {} by {:.3g} mm, {:.0f} % of its radius (limit {:.0f} %)", other, 1e3 * t.overlap,
-                     100 * t.overlap / radius, 100 * limits.overlap));
+         fmt::format("overlaps {} by {:.3g} mm, {:.0f} % of its radius (limit {:.0f} %)", other,
+                     1e3 * t.overlap, 100 * t.overlap / radius, 100 * limits.overlap));
   });
 }
 
@@ -90,7 +98,7 @@ EnergyBalance energy_of(const Model& model, const State& state) {
   EnergyBalance e;
   const Clumps& c = state.clumps;
   for (Index i = 0; i < c.id.size(); ++i) {
-    e.kinetic += kinetic_energy(model, state, i);
+    e.kinetic += kinetic_energy(model, state, i, e.damping_loss);
     e.potential -= c.mass[i] * model.gravity.dot(c.position[i]);
     e.friction_loss += c.losses[i].friction;
     e.rolling_loss += c.losses[i].rolling;
@@ -103,7 +111,7 @@ EnergyBalance energy_of(const Model& model, const State& state) {
     e.applied_work += wall.applied_work;
     e.damping_loss += wall.damping_loss;
     if (const auto& body = model.walls[w].body; body && wall.present) {
-      e.kinetic += kinetic_energy(model, *body, wall, state.dt);
+      e.kinetic += kinetic_energy(model, *body, wall, state.dt, e.damping_loss);
       e.potential -= body->mass * model.gravity.dot(wall.pose.position);
     }
   }
@@ -127,7 +135,8 @@ double unbalanced_ratio(const Model& model, const State& state) {
     all += weight.norm();
   }
   // Every contact between stones acts on two of them.
-  visit_touching(model, state, [&](const Touching& t) { all += (t.clump_2 >= 0 ? 2.0 : 1.0) * t.force().norm(); });
+  visit_touching(model, state,
+                 [&](const Touching& t) { all += (t.clump_2 >= 0 ? 2.0 : 1.0) * t.force().norm(); });
   return all > 0 ? unbalanced / all : 0.0;
 }
 

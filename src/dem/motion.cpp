@@ -25,6 +25,11 @@ double kick(const Vec3& unbalanced, const Vec3& inertia, double alpha, double du
   return 0.5 * duration * (unbalanced - force).dot(before + rate);
 }
 
+/// Length of the chord that a point at distance 1 from the centre has gone at most.
+double chord(const Quat& before, const Quat& after) {
+  return 2.0 * (before.conjugate() * after).vec().norm();
+}
+
 void move_clump(const Model& model, State& state, Workspace& work, Index c, double kick_time, double dt) {
   Clumps& s = state.clumps;
   const double alpha = model.local_damping;
@@ -47,11 +52,12 @@ void move_clump(const Model& model, State& state, Workspace& work, Index c, doub
   } else {
     angular_momentum += kick_time * moment;
   }
+  const Quat before = s.orientation[c];
   rotate_freely(s.orientation[c], angular_momentum, s.inertia[c], dt);
   work.rotation[c] = s.orientation[c].toRotationMatrix();
   s.angular_velocity[c] = spin_of(work.rotation[c], s.inertia[c], angular_momentum);
 
-  work.travel[c] += dt * (s.velocity[c].norm() + work.bound[c] * s.angular_velocity[c].norm());
+  work.travel[c] += dt * s.velocity[c].norm() + work.bound[c] * chord(before, s.orientation[c]);
 }
 
 void move_body(const Model& model, const BodyProperties& body, WallState& wall, double kick_time, double dt) {
@@ -94,6 +100,18 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   wall.applied_work += 0.5 * kick_time * wall.applied_moment.dot(spin_before + wall.angular_velocity);
 }
 
+/// Distance from the wall's origin beyond which its turning can touch no stone [m].
+double reach_of(const Model& model, const State& state, const Workspace& work, std::size_t w) {
+  const Vec3& spin = state.walls[w].angular_velocity;
+  if (!model.walls[w].shape.is_plane || spin.isZero(0)) return model.walls[w].shape.reach;
+  double reach = 0;  // a plane has no end: as far as the farthest stone
+  for (std::size_t c = 0; c < work.bound.size(); ++c) {
+    const double away = (state.clumps.position[c] - state.walls[w].pose.position).norm();
+    reach = std::max(reach, away + work.bound[c]);
+  }
+  return reach;
+}
+
 }  // namespace
 
 Vec3 damped(const Vec3& unbalanced, const Vec3& velocity, double alpha) {
@@ -121,6 +139,7 @@ void move_walls(const Model& model, State& state, Workspace& work, double dt) {
   for (Index w = 0; w < state.walls.size(); ++w) {
     WallState& wall = state.walls[w];
     if (!wall.present) continue;
+    const Quat before = wall.pose.orientation;
     if (const auto& body = model.walls[w].body) {
       move_body(model, *body, wall, kick_time, dt);
     } else {
@@ -133,7 +152,7 @@ void move_walls(const Model& model, State& state, Workspace& work, double dt) {
     }
     work.wall_rotation[w] = wall.pose.orientation.toRotationMatrix();
     work.wall_travel[w] +=
-        dt * (wall.velocity.norm() + model.walls[w].shape.reach * wall.angular_velocity.norm());
+        dt * wall.velocity.norm() + reach_of(model, state, work, w) * chord(before, wall.pose.orientation);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "dem/inspect.h"
 #include "dem/search.h"
 
 namespace trackbed {
@@ -191,7 +192,8 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   work.entries.resize(2 * near.size());
   std::vector<int> next(work.first_entry.begin(), work.first_entry.end() - 1);
   for (Index p = 0; p < near.size(); ++p)
-    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(2 * p + 1);
+    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] =
+        static_cast<int>(2 * p + 1);
   for (Index p = 0; p < near.size(); ++p)
     work.entries[static_cast<Index>(next[static_cast<Index>(near[p].first)]++)] = static_cast<int>(2 * p);
 }
@@ -227,7 +229,8 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
   }
   state.wall_blocks = std::move(blocks);
   work.wall_results.assign(near.size(), {});
-  // Candidates against walls are looked for anew: there are few, and their facet lists are not worth carrying.
+  // Candidates against walls are looked for anew: there are few, and their facet lists are not worth
+  // carrying.
   work.wall_geometry.assign(state.wall_blocks.size(), {});
   for (Index b = 0; b < state.wall_blocks.size(); ++b) {
     work.wall_geometry[b].search.resize(state.wall_blocks[b].pairs.size());
@@ -291,6 +294,7 @@ bool pairs_are_due(const Model&, const State&, const Workspace& work) {
 }
 
 void rebuild_pairs(const Model& model, State& state, Workspace& work) {
+  inspect(model, state, work);  // a place that is not a number has no cell
   choose_search(model, state, work);
   rebuild_clump_pairs(state, work);
   rebuild_wall_pairs(model, state, work);

@@ -39,7 +39,13 @@ void settle_contacts(const Model& model, State& state, Workspace& work) {
 
 void step(const Model& model, State& state, Workspace& work) {
   Stopwatch watch;
-  if (state.planned_dt == 0 || !work.pairs_are_valid) settle_contacts(model, state, work);
+  if (state.planned_dt == 0) {
+    settle_contacts(model, state, work);
+  } else if (!work.pairs_are_valid) {
+    // The workspace was thrown away: the state knows the forces, only the search is to be made anew.
+    prepare(model, state, work);
+    rebuild_pairs(model, state, work);
+  }
   watch.add_to(work.profile.search);
   const double dt = state.planned_dt;
 

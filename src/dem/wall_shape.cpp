@@ -8,17 +8,17 @@
 namespace trackbed {
 namespace {
 
-// Two closest points nearer than this fraction of the radius are one point: rounding must not make two contacts
-// of one, nor may the seam of a mesh stored in single precision.
+// Two closest points nearer than this fraction of the radius are one point: rounding must not make two
+// contacts of one, nor may the seam of a mesh stored in single precision.
 constexpr double same_point = 1e-5;
-// Contacts whose normals differ by less (in radians) are one: two facets of a face that is flat but for noise.
+// Contacts whose normals differ by less (in radians) are one: two facets of a face that is flat but for
+// noise.
 constexpr double same_normal = 1e-3;
 
 Sphere bound_of(const Facet& f) {
   // Smallest sphere of the longest side, or the circumscribed one: the former suffices after growing it.
   const Vec3 centre = (f.a + f.b + f.c) / 3.0;
-  return {centre,
-          std::max({(f.a - centre).norm(), (f.b - centre).norm(), (f.c - centre).norm()})};
+  return {centre, std::max({(f.a - centre).norm(), (f.b - centre).norm(), (f.c - centre).norm()})};
 }
 
 struct Near {
@@ -90,8 +90,7 @@ Vec3 closest_point(const Facet& f, const Vec3& p) {
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return f.a + d2 / (d2 - d6) * ac;
 
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return f.b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (f.c - f.b);
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return f.b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (f.c - f.b);
 
   // Inside the triangle: the projection along its normal, which does not depend on how the face is cut.
   const Vec3 normal = ab.cross(ac);
@@ -107,19 +106,25 @@ int touching_points(const WallShape& shape, const int* near_facets, int n_near, 
   }
   // A pebble that meets more facets than this lies on a mesh far finer than itself; the nearest ones decide.
   constexpr int most = 64;
+  const auto is_nearer = [](const Near& a, const Near& b) {
+    return a.distance != b.distance ? a.distance < b.distance : a.facet < b.facet;
+  };
   std::array<Near, most> near;
   int n = 0;
-  for (int k = 0; k < n_near && n < most; ++k) {
+  for (int k = 0; k < n_near; ++k) {
     const Vec3 q = closest_point(shape.facets[static_cast<std::size_t>(near_facets[k])], centre);
     const double distance2 = (q - centre).squaredNorm();
-    if (distance2 < radius * radius)
-      near[static_cast<std::size_t>(n++)] = {q, std::sqrt(distance2), near_facets[k]};
+    if (!(distance2 < radius * radius)) continue;
+    const Near met{q, std::sqrt(distance2), near_facets[k]};
+    if (n < most) {
+      near[static_cast<std::size_t>(n++)] = met;
+    } else if (Near& farthest = *std::max_element(near.begin(), near.end(), is_nearer);
+               is_nearer(met, farthest)) {
+      farthest = met;
+    }
   }
   if (n == 0) return 0;
-  if (n > 1)
-    std::sort(near.begin(), near.begin() + n, [](const Near& a, const Near& b) {
-      return a.distance != b.distance ? a.distance < b.distance : a.facet < b.facet;
-    });
+  if (n > 1) std::sort(near.begin(), near.begin() + n, is_nearer);
 
   const double tolerance = same_point * radius;
   int found = 0;
@@ -130,7 +135,8 @@ int touching_points(const WallShape& shape, const int* near_facets, int n_near, 
       const double apart = (points[static_cast<std::size_t>(m)].point - q.point).norm();
       is_new = apart > std::max(tolerance, same_normal * q.distance);
     }
-    if (is_new && is_local_minimum(shape, near.data(), n, q, tolerance))
+    // The nearest point of all is a minimum without asking.
+    if (is_new && (k == 0 || is_local_minimum(shape, near.data(), n, q, tolerance)))
       points[static_cast<std::size_t>(found++)] = {q.point, q.distance, q.facet};
   }
   return found;
