@@ -7,9 +7,8 @@
 
 namespace trackbed {
 
-/// Two views in one picture: all stones and bodies from the front and above; and what lies behind the
-/// vertical plane through the middle of the bed, cut through. Walls are left out. Nothing but white without
-/// stones.
+/// Two views in one picture: all stones and bodies, from the front and above; and from the front those whose
+/// centre lies behind the middle of the bed. Walls are left out.
 void draw_bed(const Simulation& sim, const std::filesystem::path& png);
 
 /// Force chains, from the front: a bar between the centres of two stones in touch, as thick as the force is

@@ -114,19 +114,22 @@ void Recorder::add_row(const Simulation& sim) {
 }
 
 void Recorder::write_tables(const Simulation& sim) const {
-  const std::string stage = file_name_of(sim.stage);
-  write_contacts(sim, folder_ / (stage + "-contacts.csv"));
-  write_stones(sim, places_, folder_ / (stage + "-stones.csv"));
+  write_contacts(sim, of_stage(sim, "contacts.csv"));
+  write_stones(sim, places_, of_stage(sim, "stones.csv"));
   for (const char* table : {"contacts.csv", "stones.csv"})
-    write_file(folder_ / table, read_file(folder_ / fmt::format("{}-{}", stage, table)));
+    write_file(folder_ / table, read_file(of_stage(sim, table)));
 }
 
 void Recorder::draw_pictures(const Simulation& sim) const {
-  const std::string stage = file_name_of(sim.stage);
-  draw_bed(sim, folder_ / (stage + ".png"));
-  draw_forces(sim, folder_ / (stage + "-forces.png"));
-  write_file(folder_ / "bed.png", read_file(folder_ / (stage + ".png")));
-  write_file(folder_ / "forces.png", read_file(folder_ / (stage + "-forces.png")));
+  draw_bed(sim, of_stage(sim, "bed.png"));
+  draw_forces(sim, of_stage(sim, "forces.png"));
+  for (const char* picture : {"bed.png", "forces.png"})
+    write_file(folder_ / picture, read_file(of_stage(sim, picture)));
+}
+
+fs::path Recorder::of_stage(const Simulation& sim, const char* file) const {
+  make_folder(folder_ / "stages");
+  return folder_ / "stages" / fmt::format("{}-{}", file_name_of(sim.stage), file);
 }
 
 fs::path Recorder::write_failure(const Simulation& sim) const {

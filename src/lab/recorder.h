@@ -1,10 +1,9 @@
 // What a run leaves in its folder while it goes on:
 //
 //   series.csv              a row every record.every of simulated time and at the end of each stage
-//   STAGE-contacts.csv      every contact at the end of the stage; contacts.csv is that of the last stage
-//   STAGE-stones.csv        every stone at the end of the stage; stones.csv is that of the last stage
-//   STAGE.png, STAGE-forces.png, bed.png, forces.png   likewise: the bed, and the forces in it
-//   paraview/*.pvd          a frame at the end of each stage, and every record.paraview_every
+//   contacts.csv            every contact at the end of the last stage; stages/STAGE-contacts.csv: of each
+//   stage stones.csv              every stone, likewise bed.png, forces.png     the bed and the force chains
+//   in it, likewise paraview/*.pvd          a frame at the end of each stage, and every record.paraview_every
 //   failure/                tables and a ParaView frame of the last state of a run that failed
 #pragma once
 
@@ -49,6 +48,7 @@ class Recorder {
   void add_row(const Simulation& sim);
   void write_tables(const Simulation& sim) const;
   void draw_pictures(const Simulation& sim) const;
+  std::filesystem::path of_stage(const Simulation& sim, const char* file) const;
 
   RecordInput record_;
   std::filesystem::path folder_;

@@ -14,8 +14,8 @@ using Index = std::size_t;
 constexpr Index most_facets = 1000;     // of a stone that is shown as it is
 constexpr double cells_per_radius = 8;  // of the bounding sphere, in a finer one
 
-void add_ball(TriangleMesh& mesh, const Pebble& pebble) {
-  const TriangleMesh ball = icosphere(2, pebble.radius);
+void add_ball(TriangleMesh& mesh, const Pebble& pebble, int level) {
+  const TriangleMesh ball = icosphere(level, pebble.radius);
   const int first = static_cast<int>(mesh.vertices.size());
   for (const Vec3& v : ball.vertices) mesh.vertices.push_back(pebble.centre + v);
   for (const auto& [a, b, c] : ball.facets) mesh.facets.push_back({first + a, first + b, first + c});
@@ -53,7 +53,7 @@ std::vector<TriangleMesh> shown_surfaces(const Model& model) {
   for (const ClumpTemplate& t : model.templates) {
     TriangleMesh mesh = t.surface;
     if (mesh.facets.empty())
-      for (const Pebble& pebble : t.pebbles) add_ball(mesh, pebble);
+      for (const Pebble& pebble : t.pebbles) add_ball(mesh, pebble, t.pebbles.size() == 1 ? 3 : 1);
     else if (mesh.facets.size() > most_facets)
       mesh = merge_vertices(mesh, t.bounding_radius / cells_per_radius);
     shown.push_back(std::move(mesh));
