@@ -13,6 +13,7 @@
 #include "geom/solid.h"
 #include "geom/stone.h"
 #include "geom/stone_generator.h"
+#include "lab/checks.h"
 
 namespace trackbed {
 namespace {
@@ -21,9 +22,19 @@ int material_index(const Document& document, const Simulation& sim, const std::s
                    const std::string& name) {
   const int index = sim.find_material(name);
   if (index >= 0) return index;
-  std::string known;
-  for (const Material& m : sim.model.materials) known += (known.empty() ? "" : ", ") + m.name;
-  document.fail(where, "there is no material called " + name, "there is: " + known);
+  std::vector<std::string> known;
+  for (const Material& m : sim.model.materials) known.push_back(m.name);
+  refuse_unknown(document, where, "material", name, known);
+}
+
+/// A mesh that cannot be used, at the key that names it.
+template <class Use>
+auto use_mesh(const Document& document, const std::string& key, Use&& use) {
+  try {
+    return use();
+  } catch (const InputError& error) {
+    document.fail(key, error.what(), "repair the mesh or choose another");
+  }
 }
 
 void build_materials(const CaseInput& in, Simulation& sim) {
@@ -74,7 +85,8 @@ void build_templates(const Document& document, const CaseInput& in, Simulation& 
       if (stones.files.empty()) {
         StoneRecipe recipe;
         recipe.sieve_size = 0.04;
-        made[k] = make_stone(generate_stone(recipe, in.seed, static_cast<int>(k)), fmt::format("stone-{}", k), filling)
+        made[k] = make_stone(generate_stone(recipe, in.seed, static_cast<int>(k)), fmt::format("stone-{}", k),
+                             filling)
                       .clump;
       } else {
         made[k] = stone_from_file(stones.files[k], stones, filling);
@@ -96,7 +108,7 @@ void build_templates(const Document& document, const CaseInput& in, Simulation& 
 
 void build_body(const std::string& name, const BodyInput& in, int material, Simulation& sim,
                 const Document& document) {
-  TriangleMesh mesh = in.shape();
+  TriangleMesh mesh = use_mesh(document, in.here + ".file", [&] { return in.shape(); });
   const MassProperties mass = mass_properties(mesh);
   const double density = sim.model.materials[static_cast<std::size_t>(material)].density;
   if (!in.mass && density == 0)
@@ -123,11 +135,15 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
   Simulation sim;
   sim.seed = in.seed;
   build_materials(in, sim);
-  for (const auto& [name, wall] : in.walls)
-    wall.input->build(name, material_index(document, sim, wall.input->here + ".material", wall.input->material), sim);
+  check_names(document, in);
+  for (const auto& [name, wall] : in.walls) {
+    const int material = material_index(document, sim, wall.input->here + ".material", wall.input->material);
+    use_mesh(document, wall.input->here + ".file", [&] { wall.input->build(name, material, sim); });
+  }
   for (const auto& [name, body] : in.bodies)
     build_body(name, *body.input,
-               material_index(document, sim, body.input->here + ".material", body.input->material), sim, document);
+               material_index(document, sim, body.input->here + ".material", body.input->material), sim,
+               document);
   const int stone = material_index(document, sim, "stones.material", in.stones.material);
   if (sim.model.materials[static_cast<std::size_t>(stone)].density == 0)
     document.fail("materials." + in.stones.material, "the stones' material has no density",
@@ -145,6 +161,8 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
   m.limits.overlap = in.numerics.overlap_limit;
   m.limits.speed = in.numerics.speed_limit;
   if (!sim.container.isEmpty()) m.limits.domain = sim.container;
+  check_time_step(document, in, sim);
+  check_stages(document, in, sim);
   sim.changed();
   return sim;
 }

@@ -1,22 +1,32 @@
 // The keys of a case.
 #include <algorithm>
+#include <functional>
 
 #include "dem/laws/table.h"
 #include "lab/case.h"
 
 namespace trackbed {
+namespace {
+
+/// Whether each value is above the one before.
+bool ascends(const std::vector<double>& values) {
+  return std::ranges::adjacent_find(values, std::greater_equal<>()) == values.end();
+}
+
+}  // namespace
 
 void declare(Fields& f, GradingInput& in) {
   f.quantities("sieves", in.sieves, Dimension::length, {.above = 0}, "sieve openings, ascending");
   f.quantities("passing", in.passing, Dimension::none, {.at_least = 0, .at_most = 1},
                "share of the mass that passes each sieve, from 0 to 100 %");
-  f.choice("size", in.size, {"volume", "sieve"},
-           "what the sieve measures: volume, the diameter of the ball of equal volume; sieve, the smallest square "
-           "hole that the stone passes");
+  f.choice(
+      "size", in.size, {"volume", "sieve"},
+      "what the sieve measures: volume, the diameter of the ball of equal volume; sieve, the smallest square "
+      "hole that the stone passes");
   f.check(in.sieves.size() == in.passing.size() && in.sieves.size() >= 2, "passing",
           "there must be one share for each sieve, two at least", "give lists of equal length");
-  f.check(std::is_sorted(in.sieves.begin(), in.sieves.end(), std::less_equal<>()), "sieves",
-          "the sieves do not ascend", "list the smallest opening first, each once");
+  f.check(ascends(in.sieves), "sieves", "the sieves do not ascend",
+          "list the smallest opening first, each once");
   f.check(std::is_sorted(in.passing.begin(), in.passing.end()), "passing", "the shares fall",
           "a larger sieve lets at least as much pass");
   f.check(!in.passing.empty() && in.passing.front() == 0 && in.passing.back() == 1, "passing",
@@ -24,9 +34,12 @@ void declare(Fields& f, GradingInput& in) {
 }
 
 void declare(Fields& f, StonesInput& in) {
-  f.paths("files", in.files, "stone meshes (STL, OBJ, PLY); by default shapes are made by the stone generator");
-  f.integer("shapes", in.shapes, {.at_least = 1, .at_most = 1000}, "number of shapes that the generator makes");
-  f.choice("fidelity", in.fidelity, {"clump", "ball"}, "clump: pebbles fill the shape; ball: one pebble of equal volume");
+  f.paths("files", in.files,
+          "stone meshes (STL, OBJ, PLY); by default shapes are made by the stone generator");
+  f.integer("shapes", in.shapes, {.at_least = 1, .at_most = 1000},
+            "number of shapes that the generator makes");
+  f.choice("fidelity", in.fidelity, {"clump", "ball"},
+           "clump: pebbles fill the shape; ball: one pebble of equal volume");
   f.quantity("distance", in.distance, Dimension::angle, {.at_least = 0, .below = 3.14159265358979},
              "Distance: largest angle between two pebbles; larger is smoother, with more pebbles");
   f.number("ratio", in.ratio, {.above = 0, .at_most = 1},
@@ -41,7 +54,8 @@ void declare(Fields& f, StonesInput& in) {
 void declare(Fields& f, MaterialInput& in) {
   f.quantity(required("kn"), in.kn, Dimension::stiffness, {.above = 0}, "normal stiffness of the piece");
   f.quantity(required("ks"), in.ks, Dimension::stiffness, {.at_least = 0}, "shear stiffness of the piece");
-  f.number("friction", in.friction, {.at_least = 0, .at_most = 10}, "Coulomb coefficient; a pair has the smaller one");
+  f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
+           "Coulomb coefficient; a pair has the smaller one");
   f.number("rolling_friction", in.rolling_friction, {.at_least = 0},
            "rolling coefficient, used by the law linear_rolling; a pair has the smaller one");
   f.quantity("density", in.density, Dimension::density, {.at_least = 0}, "of stones and bodies made of it");
@@ -59,14 +73,16 @@ void declare(Fields& f, ContactInput& in) {
   for (const auto& [name, kind] : law_names) laws.emplace_back(name);
   f.choice("law", in.law, laws, "contact law");
   f.choice("inherit", in.inherit, {"series", "contact"},
-           "series: stiffnesses belong to the pieces, two in touch are springs in series; contact: they are those of "
+           "series: stiffnesses belong to the pieces, two in touch are springs in series; contact: they are "
+           "those of "
            "the contact, the softer of two");
   f.section("dashpot", in.dashpot, "viscous damping in contacts");
 }
 
 void declare(Fields& f, NumericsInput& in) {
   f.vector("gravity", in.gravity, Dimension::acceleration, {}, "gravity");
-  f.number("damping", in.damping, {.at_least = 0, .below = 1}, "local damping of stones and bodies (Cundall)");
+  f.number("damping", in.damping, {.at_least = 0, .below = 1},
+           "local damping of stones and bodies (Cundall)");
   f.number("safety", in.safety, {.above = 0, .at_most = 1}, "of the stable time step");
   f.number("largest_travel", in.largest_travel, {.above = 0, .at_most = 0.5},
            "no point moves further in a step than this share of the smallest pebble's radius");
@@ -78,18 +94,24 @@ void declare(Fields& f, NumericsInput& in) {
              "search distance of stones; changes speed, not results");
   f.number("overlap_limit", in.overlap_limit, {.above = 0},
            "the run stops when an overlap exceeds this share of the smaller stone's radius");
-  f.quantity("speed_limit", in.speed_limit, Dimension::velocity, {.above = 0}, "the run stops when a stone is faster");
+  f.quantity("speed_limit", in.speed_limit, Dimension::velocity, {.above = 0},
+             "the run stops when a stone is faster");
 }
 
 void declare(Fields& f, RecordInput& in) {
-  f.quantity("every", in.every, Dimension::time, {.above = 0}, "simulated time between two rows of series.csv");
+  f.quantity("every", in.every, Dimension::time, {.above = 0},
+             "simulated time between two rows of series.csv");
   f.texts("measures", in.measures, "further columns of series.csv");
-  f.quantities("force_bins", in.force_bins, Dimension::force, {.above = 0}, "limits of the histogram of contact forces");
+  f.quantities("force_bins", in.force_bins, Dimension::force, {.above = 0},
+               "limits of the histogram of contact forces");
   f.flag("tables", in.tables, "write contacts.csv and stones.csv at the end of each stage");
   f.quantity("paraview_every", in.paraview_every, Dimension::time, {.above = 0},
              "simulated time between two ParaView frames; by default one at the end of each stage");
-  f.choice("paraview_stones", in.paraview_stones, {"surfaces", "pebbles", "none"}, "how stones appear in ParaView");
+  f.choice("paraview_stones", in.paraview_stones, {"surfaces", "pebbles", "none"},
+           "how stones appear in ParaView");
   f.flag("picture", in.picture, "draw the bed and its force chains at the end of each stage");
+  f.check(ascends(in.force_bins), "force_bins", "the limits do not ascend",
+          "list the smallest first, each once");
 }
 
 void declare(Fields& f, CaseInput& in) {
@@ -103,6 +125,8 @@ void declare(Fields& f, CaseInput& in) {
   f.section("numerics", in.numerics, "gravity, damping, time step, search");
   f.section("record", in.record, "what is written");
   f.sequence("stages", in.stages, stage_kinds(), "what happens, in this order");
+  for (const OneOf<StageInput>& stage : in.stages)
+    if (stage.input->name.empty()) stage.input->name = stage.kind;
   f.check(!in.stages.empty(), "stages", "there is no stage", "add [[stages]] with a kind");
   f.check(!in.materials.empty(), "materials", "there is no material", "add [materials.ballast]");
 }

@@ -8,7 +8,9 @@
 namespace trackbed {
 namespace {
 
-double ball_volume(double diameter) { return std::numbers::pi / 6.0 * diameter * diameter * diameter; }
+double ball_volume(double diameter) {
+  return std::numbers::pi / 6.0 * diameter * diameter * diameter;
+}
 
 }  // namespace
 
@@ -27,6 +29,16 @@ std::vector<double> draw_sizes(const GradingInput& grading, double solid_volume,
   }
   std::sort(sizes.begin(), sizes.end(), std::greater<>());
   return sizes;
+}
+
+double smallest_size(const GradingInput& grading) {
+  const auto band = std::ranges::adjacent_find(grading.passing, std::less<>());
+  return grading.sieves[static_cast<std::size_t>(band - grading.passing.begin())];
+}
+
+double scale_to_size(const GradingInput& grading, const ClumpTemplate& stone, double size) {
+  if (grading.size == "sieve") return size / stone.sieve_size;
+  return size / std::cbrt(6.0 * stone.volume / std::numbers::pi);
 }
 
 std::vector<double> passing(const GradingInput& grading, const std::vector<double>& sizes) {

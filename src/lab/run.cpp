@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <map>
 #include <new>
 
 #include "base/error.h"
@@ -149,13 +148,8 @@ void run_stages(Simulation& sim, std::vector<NamedStage>& stages, Recorder& reco
 
 std::vector<NamedStage> stages_of(const CaseInput& experiment) {
   std::vector<NamedStage> stages;
-  std::map<std::string, int> seen;
-  for (const OneOf<StageInput>& input : experiment.stages) {
-    const std::string name = input.input->name.empty() ? input.kind : input.input->name;
-    const int count = ++seen[file_name_of(name)];
-    stages.push_back(
-        {count == 1 ? name : fmt::format("{}-{}", name, count), input.kind, input.input->make(experiment)});
-  }
+  for (const OneOf<StageInput>& stage : experiment.stages)
+    stages.push_back({stage.input->name, stage.kind, stage.input->make(experiment)});
   return stages;
 }
 

@@ -33,7 +33,7 @@ struct NamedStage {
 void run_stages(Simulation& sim, std::vector<NamedStage>& stages, Recorder& recorder,
                 const RunOptions& options, Summary& summary);
 
-/// The stages of a case; a name that comes again gets a number: "settle", "settle-2".
+/// The stages of a case.
 std::vector<NamedStage> stages_of(const CaseInput& experiment);
 
 /// Checks and makes all that a run needs, also the names in record.measures. Throws InputError.

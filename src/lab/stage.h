@@ -21,6 +21,7 @@ struct Result {
   Dimension dimension = Dimension::none;
 };
 
+class Document;
 class Stage;
 struct CaseInput;
 
@@ -29,6 +30,10 @@ struct StageInput {
   std::string name;  // default: its kind
   std::string here;  // where it stands in the file, for errors found later
   virtual ~StageInput() = default;
+  /// Refuses, with Document::fail, what is wrong and can be known before the run; the stage relies on it.
+  virtual void check(const Document&, const CaseInput&, const Simulation&) const {}
+  /// Whether the stage places this body.
+  virtual bool places(const std::string& /*body*/) const { return false; }
   virtual std::unique_ptr<Stage> make(const CaseInput& experiment) const = 0;
 };
 

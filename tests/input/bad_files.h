@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
+#include <functional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -25,23 +25,30 @@ inline std::vector<std::string> overrides_in(const std::string& text) {
   return overrides;
 }
 
-/// Reads every file of the folder as an Input. Files are named without their folder in the messages.
+/// Reads every file of the folder as an Input, then uses it. The folder is the current one meanwhile: files
+/// are named without it in the messages.
 template <class Input>
-void expect_messages(const std::filesystem::path& folder) {
-  const std::vector<std::filesystem::path> files = expand_pattern(folder / "*.toml");
+void expect_messages(const std::filesystem::path& folder,
+                     const std::function<void(const Document&, const Input&)>& use = {}) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  const std::vector<std::filesystem::path> files = expand_pattern("*.toml");
   ASSERT_FALSE(files.empty()) << folder;
   for (const std::filesystem::path& file : files) {
     const std::string text = read_file(file);
-    std::string expected = read_file(std::filesystem::path(file).replace_extension(".txt"));
+    const std::string expected = read_file(std::filesystem::path(file).replace_extension(".txt"));
     std::string message = "no error\n";
     try {
       Input input;
-      Document::from_text(text, file.filename(), overrides_in(text)).read(input);
+      const Document document = Document::from_text(text, file.filename(), overrides_in(text));
+      document.read(input);
+      if (use) use(document, input);
     } catch (const InputError& error) {
       message = std::string(error.what()) + '\n';
     }
     EXPECT_EQ(message, expected) << file;
   }
+  std::filesystem::current_path(before);
 }
 
 }  // namespace trackbed

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/rng.h"
 #include "dem/overlap.h"
+#include "io/read.h"
 #include "lab/case.h"
 #include "lab/grading.h"
 #include "lab/stages/table.h"
@@ -20,6 +21,13 @@ struct FillInput : StageInput {
   double porosity = 0.4;
   double density = 0.22;
   double clearance = 0.2e-3;  // [m]
+
+  /// Of the stones that fill the container [m], the largest first.
+  std::vector<double> sizes(const StonesInput& stones, const Simulation& sim) const {
+    Rng rng(sim.seed, "sizes");
+    return draw_sizes(stones.grading, (1.0 - porosity) * sim.container.volume(), rng);
+  }
+  void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override;
   std::unique_ptr<Stage> make(const CaseInput& experiment) const override;
 };
 
@@ -32,24 +40,21 @@ void declare(Fields& f, FillInput& in) {
   f.quantity("clearance", in.clearance, Dimension::length, {.above = 0}, "left free between stones");
 }
 
-/// Places stones of the given sizes at random, none touching another or a wall, in a column over the container's
-/// floor (random sequential addition, the largest first).
+/// Places stones of the given sizes at random, none touching another or a wall, in a column over the
+/// container's floor (random sequential addition, the largest first).
 class Fill : public Stage {
  public:
   Fill(const FillInput& in, const CaseInput& experiment) : in_(in), stones_(experiment.stones) {}
 
   void open(Simulation& sim) override {
-    if (sim.container.isEmpty())
-      throw InputError(fmt::format("stage {}: there is no container to fill: declare a wall of kind box", in_.name));
-    Rng sizes_rng(sim.seed, "sizes"), rng(sim.seed, "places");
-    sizes_ = draw_sizes(stones_.grading, (1.0 - in_.porosity) * sim.container.volume(), sizes_rng);
-    if (sizes_.empty())
-      throw InputError(fmt::format("stage {}: the container is too small for a single stone of the grading", in_.name));
+    Rng rng(sim.seed, "places");
+    sizes_ = in_.sizes(stones_, sim);
     double volume = 0;
     for (double size : sizes_) volume += std::numbers::pi / 6.0 * size * size * size;
     const Vec3 extent = sim.container.sizes();
     column_ = sim.container;
-    column_.max().z() = column_.min().z() + volume / (in_.density * extent.x() * extent.y()) + 2.0 * sizes_.front();
+    column_.max().z() =
+        column_.min().z() + volume / (in_.density * extent.x() * extent.y()) + 2.0 * sizes_.front();
     cell_ = largest_bound(sim);
     for (double size : sizes_) place(sim, size, rng);
     sim.model.limits.domain.extend(column_);
@@ -63,22 +68,18 @@ class Fill : public Stage {
                                 {"column_height", column_.sizes().z(), Dimension::length}};
     const std::vector<double> shares = passing(stones_.grading, sizes_);
     for (std::size_t k = 0; k < shares.size(); ++k)
-      results.push_back({fmt::format("passing_{:g}_mm", 1e3 * stones_.grading.sieves[k]), shares[k], Dimension::none});
+      results.push_back(
+          {fmt::format("passing_{:g}_mm", 1e3 * stones_.grading.sieves[k]), shares[k], Dimension::none});
     return results;
   }
 
  private:
   using Cell = std::int64_t;
 
-  double scale_of(const ClumpTemplate& t, double size) const {
-    if (stones_.grading.size == "sieve") return size / t.sieve_size;
-    return size / std::cbrt(6.0 * t.volume / std::numbers::pi);
-  }
-
   double largest_bound(const Simulation& sim) const {
     double bound = 0;
     for (const ClumpTemplate& t : sim.model.templates)
-      bound = std::max(bound, t.bounding_radius * scale_of(t, sizes_.front()));
+      bound = std::max(bound, t.bounding_radius * scale_to_size(stones_.grading, t, sizes_.front()));
     return 2.0 * bound + in_.clearance;
   }
 
@@ -110,7 +111,8 @@ class Fill : public Stage {
 
   void place(Simulation& sim, double size, Rng& rng) {
     const int shape = static_cast<int>(rng.index(static_cast<std::uint32_t>(sim.model.templates.size())));
-    const double scale = scale_of(sim.model.templates[static_cast<std::size_t>(shape)], size);
+    const ClumpTemplate& stone_shape = sim.model.templates[static_cast<std::size_t>(shape)];
+    const double scale = scale_to_size(stones_.grading, stone_shape, size);
     const int material = sim.find_material(stones_.material);
     const int stone = add_clump(sim.model, sim.state, shape, scale, material, {});
     Clumps& c = sim.state.clumps;
@@ -125,8 +127,8 @@ class Fill : public Stage {
       // No room: a higher column.
       if (tries % tries_before_growth == 0) column_.max().z() += 0.05 * column_.sizes().z();
       if (tries > 100 * tries_before_growth)
-        throw InputError(fmt::format("stage {}: a stone of {:.1f} mm does not fit into the container", in_.name,
-                                     1e3 * size));
+        throw InputError(fmt::format("stage {}: a stone of {:.1f} mm does not fit into the container",
+                                     in_.name, 1e3 * size));
     }
     const auto [x, y, z] = place_of(c.position[k]);
     cells_[cell_at(x, y, z)].push_back(stone);
@@ -136,9 +138,23 @@ class Fill : public Stage {
   StonesInput stones_;
   std::vector<double> sizes_;  // [m]
   Eigen::AlignedBox3d column_;
-  double cell_ = 0;            // [m]
+  double cell_ = 0;  // [m]
   std::unordered_map<Cell, std::vector<int>> cells_;
 };
+
+void FillInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
+  if (sim.container.isEmpty())
+    document.fail(here, "there is no container to fill", "add a wall of kind box, such as [walls.box]");
+  const double largest = experiment.stones.grading.sieves.back();
+  const double fewest =
+      (1.0 - porosity) * sim.container.volume() / (std::numbers::pi / 6.0 * std::pow(largest, 3));
+  if (fewest > 1e8)
+    document.fail(here, "the container takes more than a hundred million stones",
+                  "check the size of the container and the sieves");
+  if (sizes(experiment.stones, sim).empty())
+    document.fail(here + ".porosity", "no stone is left: the container is too small for the grading",
+                  "make the container larger, the porosity lower or the stones smaller");
+}
 
 std::unique_ptr<Stage> FillInput::make(const CaseInput& experiment) const {
   return std::make_unique<Fill>(*this, experiment);

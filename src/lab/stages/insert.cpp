@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "dem/overlap.h"
+#include "lab/checks.h"
 #include "lab/measure.h"
 #include "lab/stages/table.h"
 
@@ -16,6 +17,10 @@ struct InsertInput : StageInput {
   std::optional<double> bottom;  // [m]
   std::vector<double> at;        // [m]
   double clearance = 0;          // [m]
+  void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
+    check_body(document, sim, here + ".body", body);
+  }
+  bool places(const std::string& other) const override { return other == body; }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
@@ -26,7 +31,10 @@ void declare(Fields& f, InsertInput& in) {
              "depth of its lowest point below the surface of the bed around it");
   f.quantity("bottom", in.bottom, Dimension::length, {}, "height of its lowest point; instead of embedment");
   f.quantities("at", in.at, Dimension::length, {}, "x and y of its centre; by default the container's");
-  f.quantity("clearance", in.clearance, Dimension::length, {.at_least = 0}, "stones nearer than this are removed");
+  f.quantity("clearance", in.clearance, Dimension::length, {.at_least = 0},
+             "stones nearer than this are removed");
+  f.check(!in.bottom || in.embedment == 0, "bottom", "bottom and embedment say the same thing twice",
+          "give one of them");
   f.check(in.at.empty() || in.at.size() == 2, "at", "two lengths are needed", "give x and y");
 }
 
@@ -35,7 +43,7 @@ class Insert : public Stage {
   explicit Insert(const InsertInput& in) : in_(in) {}
 
   void open(Simulation& sim) override {
-    const int body = wall_of(sim, in_, in_.body, true);
+    const int body = sim.find_wall(in_.body);
     const auto b = static_cast<std::size_t>(body);
     const WallShape& shape = sim.model.walls[b].shape;
     WallState& wall = sim.state.walls[b];
@@ -87,12 +95,15 @@ class Insert : public Stage {
   double surface_ = 0, bottom_ = 0;
 };
 
-std::unique_ptr<Stage> InsertInput::make(const CaseInput&) const { return std::make_unique<Insert>(*this); }
+std::unique_ptr<Stage> InsertInput::make(const CaseInput&) const {
+  return std::make_unique<Insert>(*this);
+}
 
 }  // namespace
 
 Kind<StageInput> insert_stage() {
-  return kind_of<StageInput, InsertInput>("insert", "places a body on or in the bed and removes the stones in its way");
+  return kind_of<StageInput, InsertInput>("insert",
+                                          "places a body on or in the bed and removes the stones in its way");
 }
 
 }  // namespace trackbed

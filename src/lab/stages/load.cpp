@@ -1,7 +1,11 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "lab/checks.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -10,22 +14,26 @@ namespace {
 struct LoadInput : StageInput {
   std::string body;
   std::string waveform = "constant";
-  double force_min = 0, force_max = 0;  // [N]
-  double frequency = 0;                 // [Hz]
-  double duration = 0;                  // [s]
-  double ramp = 0;                      // [s]
+  double force_min = 0;             // [N]
+  std::optional<double> force_max;  // [N]
+  std::optional<double> frequency;  // [Hz]
+  double duration = 0;              // [s]
+  double ramp = 0;                  // [s]
   Vec3 direction{0, 0, -1};
-  std::vector<double> times, forces;    // [s], [N]
+  std::vector<double> times, forces;  // [s], [N]
+  void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override;
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 
   bool is_periodic() const { return waveform == "sine" || waveform == "haversine"; }
+  bool is_table() const { return waveform == "table"; }
 };
 
 void declare(Fields& f, LoadInput& in) {
   declare_common(f, in);
   f.text(required("body"), in.body, "body that is loaded");
   f.choice("waveform", in.waveform, {"constant", "sine", "haversine", "table"},
-           "constant: force_max; sine: starts at the mean, rising; haversine: starts at force_min; table: times and "
+           "constant: force_max; sine: starts at the mean, rising; haversine: starts at force_min; table: "
+           "times and "
            "forces, straight between them");
   f.quantity("force_min", in.force_min, Dimension::force, {}, "least force of a wave");
   f.quantity("force_max", in.force_max, Dimension::force, {}, "largest force of a wave, or the constant one");
@@ -37,13 +45,33 @@ void declare(Fields& f, LoadInput& in) {
   f.quantities("times", in.times, Dimension::time, {.at_least = 0}, "of a table, ascending");
   f.quantities("forces", in.forces, Dimension::force, {}, "of a table");
   f.check(in.direction.norm() > 0, "direction", "the direction is zero", "give a vector such as [0, 0, -1]");
-  f.check(!in.is_periodic() || in.frequency > 0, "frequency", "a wave needs a frequency",
+  f.check(!in.is_periodic() || in.frequency, "frequency", "a wave needs a frequency",
           "give frequency, for example \"5 Hz\"");
-  f.check(in.force_min <= in.force_max || !in.is_periodic(), "force_max", "force_max is below force_min",
+  f.check(in.is_periodic() || (!in.frequency && in.force_min == 0), "waveform",
+          "frequency and force_min belong to a wave",
+          "choose the waveform sine or haversine, or leave them out");
+  f.check(in.is_table() || in.force_max, "force_max", "there is no force",
+          "give force_max, for example \"10 kN\"");
+  f.check(!in.is_periodic() || in.force_min <= in.force_max, "force_max", "force_max is below force_min",
           "give the larger force as force_max");
-  f.check(in.waveform != "table" || (in.times.size() == in.forces.size() && in.times.size() >= 2), "times",
+  f.check(in.is_table() || (in.times.empty() && in.forces.empty()), "waveform",
+          "times and forces belong to a table", "choose the waveform table, or leave them out");
+  f.check(!in.is_table() || !in.force_max, "force_max", "the forces are those of the table",
+          "leave force_max out, or choose another waveform");
+  f.check(!in.is_table() || (in.times.size() == in.forces.size() && in.times.size() >= 2), "times",
           "a table needs as many times as forces, two at least", "give times and forces of equal length");
-  f.check(std::is_sorted(in.times.begin(), in.times.end()), "times", "times must ascend", "sort the table by time");
+  f.check(std::is_sorted(in.times.begin(), in.times.end()), "times", "times must ascend",
+          "sort the table by time");
+}
+
+void LoadInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
+  check_body(document, sim, here + ".body", body);
+  for (const OneOf<StageInput>& stage : experiment.stages) {
+    if (stage.input->places(body)) return;
+    if (stage.input.get() == this) break;
+  }
+  document.fail(here + ".body", fmt::format("{} is not in its place yet", body),
+                "place it before, with a stage of kind insert");
 }
 
 class Load : public Stage {
@@ -51,7 +79,7 @@ class Load : public Stage {
   explicit Load(const LoadInput& in) : in_(in) { in_.direction.normalize(); }
 
   void open(Simulation& sim) override {
-    body_ = static_cast<std::size_t>(wall_of(sim, in_, in_.body, true));
+    body_ = static_cast<std::size_t>(sim.find_wall(in_.body));
     start_ = sim.state.time;
     before_ = sim.state.walls[body_].applied_force;
     from_ = half_cycle_from_ = height(sim);
@@ -67,7 +95,7 @@ class Load : public Stage {
       Vec3& force = sim.state.walls[body_].applied_force;
       force = before_ + grown * (force - before_);
     }
-    if (in_.is_periodic() && t < in_.duration - 0.5 / in_.frequency) half_cycle_from_ = height(sim);
+    if (in_.is_periodic() && t < in_.duration - 0.5 / *in_.frequency) half_cycle_from_ = height(sim);
   }
 
   bool finished(const Simulation& sim) override { return sim.state.time - start_ >= in_.duration; }
@@ -91,11 +119,13 @@ class Load : public Stage {
   }
 
   double force_at(double t) const {
-    const double phase = 2.0 * std::numbers::pi * in_.frequency * t;
-    const double half_range = 0.5 * (in_.force_max - in_.force_min);
-    if (in_.waveform == "sine") return in_.force_min + half_range * (1.0 + std::sin(phase));
-    if (in_.waveform == "haversine") return in_.force_min + half_range * (1.0 - std::cos(phase));
-    if (in_.waveform == "constant") return in_.force_max;
+    if (in_.waveform == "constant") return *in_.force_max;
+    if (in_.is_periodic()) {
+      const double phase = 2.0 * std::numbers::pi * *in_.frequency * t;
+      const double half_range = 0.5 * (*in_.force_max - in_.force_min);
+      const double wave = in_.waveform == "sine" ? std::sin(phase) : -std::cos(phase);
+      return in_.force_min + half_range * (1.0 + wave);
+    }
     if (t <= in_.times.front()) return in_.forces.front();
     for (std::size_t k = 1; k < in_.times.size(); ++k)
       if (t <= in_.times[k])
@@ -111,7 +141,9 @@ class Load : public Stage {
   EnergyBalance energy_;
 };
 
-std::unique_ptr<Stage> LoadInput::make(const CaseInput&) const { return std::make_unique<Load>(*this); }
+std::unique_ptr<Stage> LoadInput::make(const CaseInput&) const {
+  return std::make_unique<Load>(*this);
+}
 
 }  // namespace
 

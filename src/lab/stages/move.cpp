@@ -1,6 +1,7 @@
 #include <cmath>
 #include <optional>
 
+#include "lab/checks.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -12,6 +13,9 @@ struct MoveInput : StageInput {
   std::optional<double> distance;  // [m]
   std::optional<double> duration;  // [s]
   std::optional<double> force;     // [N]
+  void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
+    check_wall(document, sim, here + ".wall", wall);
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
@@ -23,8 +27,9 @@ void declare(Fields& f, MoveInput& in) {
   f.quantity("duration", in.duration, Dimension::time, {.above = 0}, "stop after this time");
   f.quantity("force", in.force, Dimension::force, {.above = 0},
              "stop when the stones push against the motion with this force");
-  f.check(in.velocity.norm() > 0, "velocity", "the velocity is zero", "give a velocity, or use the stage hold");
-  f.check(in.distance || in.duration || in.force, "wall", "nothing says when the motion ends",
+  f.check(in.velocity.norm() > 0, "velocity", "the velocity is zero",
+          "give a velocity, or use the stage hold");
+  f.check(in.distance || in.duration || in.force, "duration", "nothing says when the motion ends",
           "give distance, duration or force");
 }
 
@@ -33,7 +38,7 @@ class Move : public Stage {
   explicit Move(const MoveInput& in) : in_(in) {}
 
   void open(Simulation& sim) override {
-    wall_ = static_cast<std::size_t>(wall_of(sim, in_, in_.wall, false));
+    wall_ = static_cast<std::size_t>(sim.find_wall(in_.wall));
     start_ = sim.state.time;
     from_ = sim.state.walls[wall_].pose.position;
   }
@@ -66,7 +71,9 @@ class Move : public Stage {
   Vec3 from_ = Vec3::Zero();
 };
 
-std::unique_ptr<Stage> MoveInput::make(const CaseInput&) const { return std::make_unique<Move>(*this); }
+std::unique_ptr<Stage> MoveInput::make(const CaseInput&) const {
+  return std::make_unique<Move>(*this);
+}
 
 }  // namespace
 

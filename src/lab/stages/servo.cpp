@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lab/checks.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -9,16 +10,20 @@ namespace {
 
 struct ServoInput : StageInput {
   std::string wall;
-  double force = 0;              // [N]
+  double force = 0;  // [N]
   Vec3 direction{0, 0, -1};
-  double duration = 0;           // [s]
+  double duration = 0;  // [s]
+  void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
+    check_wall(document, sim, here + ".wall", wall);
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
 void declare(Fields& f, ServoInput& in) {
   declare_common(f, in);
   f.text(required("wall"), in.wall, "wall that presses");
-  f.quantity(required("force"), in.force, Dimension::force, {.above = 0}, "force that it exerts on the stones");
+  f.quantity(required("force"), in.force, Dimension::force, {.above = 0},
+             "force that it exerts on the stones");
   f.vector("direction", in.direction, Dimension::none, {}, "in which it presses");
   f.quantity(required("duration"), in.duration, Dimension::time, {.above = 0}, "how long");
   f.check(in.direction.norm() > 0, "direction", "the direction is zero", "give a vector such as [0, 0, -1]");
@@ -29,7 +34,7 @@ class Servo : public Stage {
   explicit Servo(const ServoInput& in) : in_(in) { in_.direction.normalize(); }
 
   void open(Simulation& sim) override {
-    wall_ = wall_of(sim, in_, in_.wall, false);
+    wall_ = sim.find_wall(in_.wall);
     end_ = sim.state.time + in_.duration;
     from_ = state(sim).pose.position;
   }
@@ -53,7 +58,9 @@ class Servo : public Stage {
   Vec3 from_ = Vec3::Zero();
 };
 
-std::unique_ptr<Stage> ServoInput::make(const CaseInput&) const { return std::make_unique<Servo>(*this); }
+std::unique_ptr<Stage> ServoInput::make(const CaseInput&) const {
+  return std::make_unique<Servo>(*this);
+}
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "base/error.h"
+#include "lab/case.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -15,6 +16,11 @@ struct SettleInput : StageInput {
   std::optional<double> friction;  // during this stage
   std::optional<double> damping;   // during this stage
   std::optional<double> gravity;   // during this stage [m/s^2]
+  void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
+    if (gravity && experiment.numerics.gravity.isZero(0))
+      document.fail(here + ".gravity", "there is no gravity to raise: its direction is not known",
+                    "give numerics.gravity a direction");
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
@@ -22,7 +28,8 @@ void declare(Fields& f, SettleInput& in) {
   declare_common(f, in);
   f.number("unbalanced_ratio", in.unbalanced_ratio, {.above = 0, .below = 1},
            "at rest when the sum of unbalanced forces is below this share of the sum of all forces");
-  f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0}, "the run fails when rest takes longer");
+  f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
+             "the run fails when rest takes longer");
   f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
            "upper bound on the friction of all contacts during this stage: low values make a denser bed");
   f.number("damping", in.damping, {.at_least = 0, .below = 1}, "local damping during this stage");
@@ -44,19 +51,21 @@ class Settle : public Stage {
     if (!in_.friction) return;
     PairTable& pairs = sim.model.pairs;
     for (int a = 0; a < pairs.size(); ++a)
-      for (int b = 0; b < pairs.size(); ++b) pairs(a, b).friction = std::min(pairs(a, b).friction, *in_.friction);
+      for (int b = 0; b < pairs.size(); ++b)
+        pairs(a, b).friction = std::min(pairs(a, b).friction, *in_.friction);
   }
 
   bool finished(const Simulation& sim) override {
     if (sim.state.step % look_every != 0 || sim.state.clumps.size() == 0) return sim.state.clumps.size() == 0;
-    // Stones that pass through their rest position are for a moment without acceleration, but not at rest: the
-    // ratio must stay low.
+    // Stones that pass through their rest position are for a moment without acceleration, but not at rest:
+    // the ratio must stay low.
     const double ratio = unbalanced_ratio(sim.model, sim.state);
     calm_ = ratio < in_.unbalanced_ratio ? calm_ + 1 : 0;
     if (calm_ >= looks_needed) return true;
     if (sim.state.time - start_ > in_.time_limit)
-      throw RunError(fmt::format("not at rest after {:.3g} s: the unbalanced ratio is {:.2e}, {:.2e} was asked for",
-                                 in_.time_limit, ratio, in_.unbalanced_ratio));
+      throw RunError(
+          fmt::format("not at rest after {:.3g} s: the unbalanced ratio is {:.2e}, {:.2e} was asked for",
+                      in_.time_limit, ratio, in_.unbalanced_ratio));
     return false;
   }
 
@@ -65,8 +74,7 @@ class Settle : public Stage {
     sim.model.pairs = pairs_;
     sim.model.local_damping = damping_;
     sim.model.gravity = gravity_;
-    return {{"time", sim.state.time - start_, Dimension::time},
-            {"unbalanced_ratio", ratio, Dimension::none}};
+    return {{"time", sim.state.time - start_, Dimension::time}, {"unbalanced_ratio", ratio, Dimension::none}};
   }
 
  private:
@@ -78,7 +86,9 @@ class Settle : public Stage {
   int calm_ = 0;
 };
 
-std::unique_ptr<Stage> SettleInput::make(const CaseInput&) const { return std::make_unique<Settle>(*this); }
+std::unique_ptr<Stage> SettleInput::make(const CaseInput&) const {
+  return std::make_unique<Settle>(*this);
+}
 
 }  // namespace
 

@@ -13,7 +13,4 @@ Kind<StageInput> move_stage();
 Kind<StageInput> servo_stage();
 Kind<StageInput> hold_stage();
 
-/// Index of the wall or body that a stage names; throws InputError listing those there are.
-int wall_of(const Simulation& sim, const StageInput& in, const std::string& wall, bool must_be_body);
-
 }  // namespace trackbed

@@ -1,0 +1,112 @@
+#include "lab/checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <limits>
+#include <map>
+
+#include "dem/step.h"
+#include "io/nearest.h"
+#include "lab/grading.h"
+
+namespace trackbed {
+namespace {
+
+std::vector<std::string> names_of(const Simulation& sim, bool bodies) {
+  std::vector<std::string> names;
+  for (const Wall& wall : sim.model.walls)
+    if (wall.body.has_value() == bodies) names.push_back(wall.shape.name);
+  return names;
+}
+
+void check_plain(const Document& document, const std::string& table, const std::string& name) {
+  if (!is_plain_name(name))
+    document.fail(table + "." + name, fmt::format("\"{}\" cannot be a name in {}", name, table),
+                  plain_name_hint);
+}
+
+}  // namespace
+
+bool is_plain_name(std::string_view name) {
+  return !name.empty() && std::ranges::all_of(name, [](unsigned char c) {
+    return c < 0x80 && (std::isalnum(c) || c == '-' || c == '_');
+  });
+}
+
+void refuse_unknown(const Document& document, const std::string& key, std::string_view what,
+                    const std::string& name, const std::vector<std::string>& known) {
+  document.fail(key, fmt::format("there is no {} called {}", what, name),
+                known.empty() ? fmt::format("the case has no {}", what) : known_words(name, known));
+}
+
+void check_body(const Document& document, const Simulation& sim, const std::string& key,
+                const std::string& name) {
+  const std::vector<std::string> known = names_of(sim, true);
+  if (std::ranges::find(known, name) == known.end()) refuse_unknown(document, key, "body", name, known);
+}
+
+void check_wall(const Document& document, const Simulation& sim, const std::string& key,
+                const std::string& name) {
+  const std::vector<std::string> known = names_of(sim, false);
+  if (std::ranges::find(known, name) == known.end()) refuse_unknown(document, key, "wall", name, known);
+}
+
+void check_names(const Document& document, const CaseInput& in) {
+  std::string container;
+  for (const auto& [name, wall] : in.walls) {
+    check_plain(document, "walls", name);
+    if (wall.kind != "box") continue;
+    if (!container.empty())
+      document.fail(wall.input->here + ".kind", "there are two boxes, but one container at most",
+                    fmt::format("{} is the container; make the other walls of planes or a mesh", container));
+    container = name;
+  }
+  for (const auto& [name, body] : in.bodies) {
+    check_plain(document, "bodies", name);
+    if (in.walls.contains(name))
+      document.fail(body.input->here, fmt::format("{} is the name of a wall and of a body", name),
+                    "give one of them another name");
+  }
+}
+
+void check_stages(const Document& document, const CaseInput& in, const Simulation& sim) {
+  std::map<std::string, std::size_t> seen;
+  for (std::size_t k = 0; k < in.stages.size(); ++k) {
+    const StageInput& stage = *in.stages[k].input;
+    if (const auto [first, is_new] = seen.emplace(stage.name, k); !is_new)
+      document.fail(
+          stage.here + ".name", fmt::format("two stages are called {}", stage.name),
+          fmt::format("the other is stages.{}; a stage without name is called by its kind: give each "
+                      "a name of its own",
+                      first->second));
+    stage.check(document, in, sim);
+  }
+}
+
+void check_time_step(const Document& document, const CaseInput& in, const Simulation& sim) {
+  if (!in.numerics.time_step) return;
+  // A stone of the smallest size, of each shape, alone: what a stone allows that may touch anything.
+  Model model = sim.model;
+  model.walls.clear();
+  model.limits = {};
+  model.time_step.fixed.reset();
+  const GradingInput& grading = in.stones.grading;
+  const int material = sim.find_material(in.stones.material);
+  double stable = std::numeric_limits<double>::infinity();
+  for (std::size_t shape = 0; shape < model.templates.size(); ++shape) {
+    State state;
+    Workspace work;
+    const double scale = scale_to_size(grading, model.templates[shape], smallest_size(grading));
+    add_clump(model, state, static_cast<int>(shape), scale, material, {});
+    settle_contacts(model, state, work);
+    stable = std::min(stable, state.planned_dt);
+  }
+  if (*in.numerics.time_step > stable)
+    document.fail("numerics.time_step",
+                  fmt::format("time_step is above the stable one, {:.3g} s for the smallest stones", stable),
+                  "give a smaller one, or leave it out: Trackbed then finds the largest stable one");
+}
+
+}  // namespace trackbed

@@ -1,0 +1,36 @@
+// What is wrong with a case and cannot be seen from one key alone, said before the first step.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/read.h"
+#include "lab/case.h"
+
+namespace trackbed {
+
+/// Whether a name may become part of file names, of columns, and of keys with dots: letters, digits, - and _.
+bool is_plain_name(std::string_view name);
+inline constexpr const char* plain_name_hint = "use letters, digits, - and _ only";
+
+/// "there is no body called slepper", at a key of the case, with the nearest of the names there are.
+[[noreturn]] void refuse_unknown(const Document& document, const std::string& key, std::string_view what,
+                                 const std::string& name, const std::vector<std::string>& known);
+
+/// Refuse a name that is no body, or no wall, of the simulation.
+void check_body(const Document& document, const Simulation& sim, const std::string& key,
+                const std::string& name);
+void check_wall(const Document& document, const Simulation& sim, const std::string& key,
+                const std::string& name);
+
+/// Names of walls and bodies: plain, and each once. There is one container at most.
+void check_names(const Document& document, const CaseInput& experiment);
+
+/// Names of stages: each once; then all that the stages themselves know (StageInput::check).
+void check_stages(const Document& document, const CaseInput& experiment, const Simulation& sim);
+
+/// A time step of the user's own must suit the smallest stone of the grading.
+void check_time_step(const Document& document, const CaseInput& experiment, const Simulation& sim);
+
+}  // namespace trackbed
