@@ -1,0 +1,181 @@
+// What a run writes, with stages of the test's own.
+#include "lab/run.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <limits>
+#include <sstream>
+
+#include "base/error.h"
+#include "io/files.h"
+#include "scenes/scene.h"
+
+namespace trackbed {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Run : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::remove_all(out_);
+    make_folder(out_);
+    scenes::Setting setting;
+    setting.gravity = {0, 0, -9.81};
+    setting.damping = 0.7;
+    setting.dt = 1e-5;
+    sim_ = scenes::make_scene(setting);
+    scenes::add_plane(sim_, Vec3::Zero(), Vec3::UnitZ());
+    scenes::add_ball(sim_, {0, 0, 0.02});
+    sim_.changed();
+    summary_.title = "one ball";
+    summary_.force_limits = {0.1, 10};
+    record_.every = 1e-3;
+    record_.measures = {"weight"};
+  }
+  void TearDown() override { fs::remove_all(out_); }
+
+  void run(std::vector<NamedStage> stages) {
+    Recorder recorder(sim_, record_, out_);
+    run_stages(sim_, stages, recorder, {.out = out_, .threads = 1, .quiet = true, .progress = nullptr},
+               summary_);
+  }
+  std::vector<std::string> lines(const fs::path& file) const {
+    std::istringstream text(read_file(out_ / file));
+    std::vector<std::string> all;
+    for (std::string line; std::getline(text, line);) all.push_back(line);
+    return all;
+  }
+
+  fs::path out_ = fs::temp_directory_path() / ("trackbed_run_" + std::to_string(::getpid()));
+  Simulation sim_;
+  RecordInput record_;
+  Summary summary_;
+};
+
+class Steps : public Stage {
+ public:
+  explicit Steps(int steps, double stones = 0) : left_(steps), stones_(stones) {}
+  void open(Simulation&) override {}
+  void control(Simulation&) override { --left_; }
+  bool finished(const Simulation&) override { return left_ == 0; }
+  std::vector<Result> close(Simulation&) override {
+    return {{"answer", 42, Dimension::force}, {"added", stones_}};
+  }
+
+ private:
+  int left_;
+  double stones_;
+};
+
+/// Makes the ball's speed a thing that is not a number.
+class Breaks : public Steps {
+ public:
+  Breaks() : Steps(1000) {}
+  void control(Simulation& sim) override {
+    Steps::control(sim);
+    sim.state.clumps.velocity[0].x() = std::numeric_limits<double>::quiet_NaN();
+  }
+};
+
+NamedStage steps(const std::string& name, int n, double stones = 0) {
+  return {name, "hold", std::make_unique<Steps>(n, stones)};
+}
+
+std::vector<NamedStage> list(NamedStage a) {
+  std::vector<NamedStage> all;
+  all.push_back(std::move(a));
+  return all;
+}
+
+TEST_F(Run, SeriesHasARowAtEachTimeAndStageEndAndNoneTwice) {
+  std::vector<NamedStage> stages = list(steps("drop", 250));  // 2.5 ms: rows at 1, 2 and 2.5 ms
+  stages.push_back(steps("rest", 50));                        // to 3 ms: one row, due and end at once
+  run(std::move(stages));
+  const std::vector<std::string> rows = lines("series.csv");
+  ASSERT_EQ(rows.size(), 5u);
+  EXPECT_TRUE(rows[0].starts_with(
+      "time [s],stage,step [-],dt [s],contacts [-],energy_kinetic [J],energy_total [J],plane.force_x [N],"));
+  EXPECT_TRUE(rows[0].ends_with(",weight [N]"));
+  EXPECT_NE(rows[1].find(",drop,100,1e-05,"), std::string::npos) << rows[1];
+  EXPECT_NE(rows[3].find(",drop,250,"), std::string::npos) << rows[3];
+  EXPECT_NE(rows[4].find(",rest,300,"), std::string::npos) << rows[4];
+}
+
+TEST_F(Run, TablesTellOfEveryContactAndStone) {
+  run(list(steps("drop", 5000)));
+  const std::vector<std::string> contacts = lines("contacts.csv"), stones = lines("stages/drop-stones.csv");
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_TRUE(contacts[1].starts_with("0,0,-1,plane,")) << contacts[1];
+  ASSERT_EQ(stones.size(), 2u);
+  EXPECT_TRUE(stones[1].starts_with("0,ball,0.0888")) << stones[1];
+  EXPECT_EQ(lines("contacts.csv"), lines("stages/drop-contacts.csv"));
+  for (const char* file : {"bed.png", "forces.png", "paraview/stones.pvd", "paraview/contacts.pvd",
+                           "paraview/walls.pvd", "paraview/frames/stones-00000.vtp"})
+    EXPECT_TRUE(fs::exists(out_ / file)) << file;
+}
+
+TEST_F(Run, SummaryHoldsStagesMeasuresAndHash) {
+  run(list(steps("drop", 5000)));
+  const nlohmann::ordered_json json = to_json(summary_);
+  EXPECT_EQ(json["title"], "one ball");
+  EXPECT_EQ(json["stages"][0]["name"], "drop");
+  EXPECT_EQ(json["stages"][0]["steps"], 5000);
+  EXPECT_NEAR(json["stages"][0]["simulated_s"], 0.05, 1e-12);
+  EXPECT_EQ(json["stages"][0]["measures"]["coordination_number"]["value"], 1);
+  EXPECT_EQ(json["measures"]["drop.answer"]["value"], 42);
+  EXPECT_EQ(json["measures"]["drop.answer"]["unit"], "N");
+  EXPECT_NEAR(json["measures"]["plane.force_z"]["value"], -0.0888023523 * 9.81, 1e-5);
+  EXPECT_EQ(json["force_histogram"]["counts"], (std::vector<int>{0, 1, 0}));
+  EXPECT_EQ(json["state_hash"], hash_text(hash(sim_.state)));
+  // Second order in the step, a thirtieth of sqrt(m/k).
+  EXPECT_LT(std::abs(summary_.stages[0].energy_error), 1e-3 * energy_of(sim_.model, sim_.state).damping_loss);
+}
+
+TEST_F(Run, AFailureNamesTheStageAndLeavesTheLastState) {
+  try {
+    run(list({"blow up", "hold", std::make_unique<Breaks>()}));
+    FAIL() << "the run went on with numbers that are none";
+  } catch (const RunError& error) {
+    const std::string message = error.what();
+    EXPECT_TRUE(message.starts_with("stage blow up: stone 0 at (")) << message;
+    EXPECT_NE(message.find("the last state is in " + (out_ / "failure").string()), std::string::npos)
+        << message;
+  }
+  EXPECT_EQ(lines("failure/stones.csv").size(), 2u);
+  EXPECT_TRUE(fs::exists(out_ / "failure/contacts.csv"));
+  EXPECT_TRUE(fs::exists(out_ / "failure/paraview/stones.pvd"));
+}
+
+TEST_F(Run, StonesThatNobodyMadeStopTheRun) {
+  try {
+    run(list(steps("fill", 1, 3)));
+    FAIL() << "three stones are missing";
+  } catch (const RunError& error) {
+    EXPECT_TRUE(
+        std::string(error.what()).starts_with("stage fill: there are 1 stones at the end, 4 should be there"))
+        << error.what();
+  }
+}
+
+TEST_F(Run, AnUnknownMeasureIsRefusedWithTheNearest) {
+  record_.measures = {"porosty"};
+  sim_.container = {Vec3(0, 0, 0), Vec3(1, 1, 1)};
+  try {
+    Recorder recorder(sim_, record_, out_);
+    FAIL() << "there is no such measure";
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("there is no measure called porosty"), std::string::npos) << message;
+    EXPECT_NE(message.find("did you mean porosity?"), std::string::npos) << message;
+  }
+}
+
+TEST(FileNames, KeepLettersAndDigits) {
+  EXPECT_EQ(file_name_of("load 5 kN/m"), "load_5_kN_m");
+  EXPECT_EQ(file_name_of("rest-2.5"), "rest-2.5");
+}
+
+}  // namespace
+}  // namespace trackbed
