@@ -18,8 +18,10 @@
 namespace trackbed {
 namespace {
 
-constexpr int mesh_level = 4;      // 5120 facets
-constexpr int waves = 40;          // of the uneven surface
+constexpr int mesh_level = 4;        // 5120 facets
+constexpr int waves = 40;            // of the uneven surface
+constexpr double core_radius = 0.5;  // before stretching; a mean stone has 1
+constexpr int most_tries = 1000;
 constexpr int stretch_rounds = 3;  // to reach the wanted I/L and S/I
 
 /// A stone as a distance from its middle for every direction. The graph of such a function over a sphere can
@@ -68,7 +70,7 @@ struct RadialStone {
   double radius(const Vec3& direction) const {
     double uneven = 1;
     for (const Wave& w : waves) uneven += w.amplitude * std::cos(w.number.dot(direction) + w.phase);
-    return uneven * exit(direction).radius;
+    return std::max(uneven, 0.5) * exit(direction).radius;
   }
 };
 
@@ -91,13 +93,13 @@ std::vector<RadialStone::Plane> draw_planes(Rng& rng, int count) {
   for (int k = 0; k < count; ++k) {
     Vec3 best = random_direction(rng);
     double nearest = 2;
-    for (int tries = 0; tries < 4; ++tries) {
+    for (int tries = 0; tries < 2; ++tries) {
       const Vec3 normal = random_direction(rng);
       double closest = -1;
       for (const auto& p : planes) closest = std::max(closest, p.normal.dot(normal));
       if (closest < nearest) nearest = closest, best = normal;
     }
-    planes.push_back({best, rng.uniform(0.80, 1.10)});
+    planes.push_back({best, rng.uniform(0.72, 1.15)});
   }
   return planes;
 }
@@ -108,12 +110,14 @@ RadialStone draw_stone(Rng& rng, const StoneRecipe& recipe) {
   const int hollows = draw_count(rng, recipe.hollows);
   for (int k = 0; k < hollows; ++k) {
     const Vec3 direction = random_direction(rng);
-    const double radius = rng.uniform(0.5, 1.3), depth = draw(rng, recipe.hollow_depth);
-    stone.hollows.push_back({(stone.exit(direction).radius - depth + radius) * direction, radius});
+    const double radius = rng.uniform(1, 3), surface = stone.exit(direction).radius;
+    // Scars do not dig on where earlier ones have reached the core: the middle always lies inside the stone.
+    const double floor = std::max(surface - draw(rng, recipe.hollow_depth), std::min(surface, core_radius));
+    stone.hollows.push_back({(floor + radius) * direction, radius});
   }
   if (recipe.roughness > 0) {
     for (int k = 0; k < waves; ++k) {
-      const double number = rng.uniform(2, 16);  // lengths from the whole stone down to a few facets
+      const double number = rng.uniform(2, 14);  // lengths from the whole stone down to a few facets
       stone.waves.push_back({number * random_direction(rng), rng.uniform(0, 2 * std::numbers::pi),
                              recipe.roughness * 2.5 / (number * std::sqrt(waves / 8.0))});
     }
@@ -228,19 +232,26 @@ StoneRecipe convex_recipe() {
 TriangleMesh generate_stone(const StoneRecipe& recipe, std::uint64_t seed, int index) {
   check(recipe);
   Rng rng(seed, fmt::format("stone {}", index));
-  double elongation = 0, flatness = 0;
-  do {
-    elongation = draw(rng, recipe.elongation);
-    flatness = draw(rng, recipe.flatness);
-  } while (elongation * flatness * recipe.largest_l_over_s < 1.005);  // the box is found within 0.5 %
-  const RadialStone stone = draw_stone(rng, recipe);
-  const bool convex = stone.hollows.empty() && stone.waves.empty();
-  TriangleMesh mesh = convex ? polyhedron(stone.planes) : radial_mesh(stone);
-  stretch(mesh, elongation, flatness);
-  const double scale = recipe.sieve_size / measure_shape(mesh).sieve_size;
-  const Vec3 centre = mass_properties(mesh).centre;
-  for (Vec3& v : mesh.vertices) v = scale * (v - centre);
-  return mesh;
+  for (int tries = 0; tries < most_tries; ++tries) {
+    const double elongation = draw(rng, recipe.elongation), flatness = draw(rng, recipe.flatness);
+    if (elongation * flatness * recipe.largest_l_over_s < 1) continue;
+    const RadialStone stone = draw_stone(rng, recipe);
+    const bool convex = stone.hollows.empty() && stone.waves.empty();
+    TriangleMesh mesh = convex ? polyhedron(stone.planes) : radial_mesh(stone);
+    stretch(mesh, elongation, flatness);
+    const Shape shape = measure_shape(mesh);
+    // Stretched, the stone may have found a tighter box that lies otherwise.
+    const bool as_wanted = std::abs(shape.elongation / elongation - 1) < 0.03 &&
+                           std::abs(shape.flatness / flatness - 1) < 0.03 &&
+                           shape.length <= recipe.largest_l_over_s * shape.thickness;
+    if (!as_wanted) continue;
+    const double scale = recipe.sieve_size / shape.sieve_size;
+    const Vec3 centre = mass_properties(mesh).centre;
+    for (Vec3& v : mesh.vertices) v = scale * (v - centre);
+    return mesh;
+  }
+  throw InputError(
+      fmt::format("stone generator: none of {} stones drawn has the wanted proportions", most_tries));
 }
 
 }  // namespace trackbed
