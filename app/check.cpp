@@ -1,0 +1,55 @@
+// trackbed check: what a case would do, without doing it.
+#include <fmt/format.h>
+#include <algorithm>
+
+#include "command_line.h"
+#include "commands.h"
+#include "lab/run.h"
+
+namespace trackbed {
+namespace {
+
+void print_model(const CaseInput& experiment, const Simulation& sim) {
+  fmt::print("{}\n", experiment.title);
+  std::vector<std::size_t> pebbles;
+  for (const ClumpTemplate& t : sim.model.templates) pebbles.push_back(t.pebbles.size());
+  std::ranges::sort(pebbles);
+  fmt::print("  stone shapes  {}, with {} to {} pebbles\n", pebbles.size(), pebbles.front(), pebbles.back());
+  for (std::size_t w = 0; w < sim.model.walls.size(); ++w) {
+    const Wall& wall = sim.model.walls[w];
+    const std::string mass = wall.body ? fmt::format(", {:.4g} kg", wall.body->mass) : "";
+    fmt::print("  {:12}  {} ({}{})\n", wall.body ? "body" : "wall", wall.shape.name,
+               sim.model.materials[static_cast<std::size_t>(wall.material)].name, mass);
+  }
+  if (sim.container.isEmpty()) return;
+  const Vec3 size = sim.container.sizes();
+  fmt::print("  container     {:.4g} x {:.4g} x {:.4g} m\n", size.x(), size.y(), size.z());
+}
+
+}  // namespace
+
+int check_command(int argc, char** argv) {
+  std::filesystem::path file;
+  std::vector<std::string> overrides;
+  CLI::App app("Checks a case and says what it would do; runs nothing.", "trackbed check");
+  app.add_option("case", file, "the case file (TOML)")->required();
+  app.add_option("--set", overrides, "change a value of the case: stages.load.duration='2 s'")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  if (const auto code = parse(app, argc, argv)) return *code;
+
+  const Document document(file, overrides);
+  CaseInput experiment;
+  document.read(experiment);
+  const Simulation sim = prepare_run(document, experiment);
+  print_model(experiment, sim);
+  const std::vector<NamedStage> stages = stages_of(experiment);
+  for (std::size_t k = 0; k < stages.size(); ++k) {
+    const std::string kind = stages[k].kind == stages[k].name ? "" : fmt::format(" ({})", stages[k].kind);
+    fmt::print("  stage {:<2}      {}{}\n", k + 1, stages[k].name, kind);
+  }
+  fmt::print("nothing is wrong with {}\n", file.string());
+  return 0;
+}
+
+}  // namespace trackbed

@@ -1,0 +1,52 @@
+// The program: each subcommand reads its own command line. Exits 0 when done, 1 for a run that failed, 2 for
+// wrong input.
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <string_view>
+
+#include "base/error.h"
+#include "commands.h"
+
+namespace {
+
+struct Command {
+  std::string_view name;
+  int (*run)(int argc, char** argv);
+  std::string_view purpose;
+};
+
+constexpr std::array commands = {
+    Command{"run", trackbed::run_command, "run a case and write its results"},
+    Command{"check", trackbed::check_command, "check a case and say what it would do"},
+    Command{"describe", trackbed::describe_command, "say what may stand in a case"},
+    Command{"bench", trackbed::bench_command, "time this machine on a bed"},
+    Command{"stone", trackbed::stone_command, "check stone meshes and fill them with pebbles"},
+};
+
+int dispatch(int argc, char** argv) {
+  const std::string_view name = argc > 1 ? argv[1] : "";
+  for (const Command& command : commands)
+    if (command.name == name) return command.run(argc - 1, argv + 1);
+  const bool asked = name == "--help" || name == "-h";
+  fmt::print(asked ? stdout : stderr, "usage: trackbed COMMAND ...   (COMMAND --help says more)\n");
+  for (const Command& command : commands)
+    fmt::print(asked ? stdout : stderr, "  {:8} {}\n", command.name, command.purpose);
+  return asked ? 0 : 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return dispatch(argc, argv);
+  } catch (const trackbed::InputError& error) {
+    fmt::print(stderr, "trackbed: {}\n", error.what());
+    return 2;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "trackbed: {}\n", error.what());
+    return 1;
+  }
+}

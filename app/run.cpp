@@ -1,0 +1,68 @@
+// trackbed run: a case from its first stage to its results.
+#include "lab/run.h"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <array>
+
+#include "command_line.h"
+#include "commands.h"
+#include "io/progress.h"
+
+namespace trackbed {
+namespace {
+
+/// What most people look for first; those of walls and the rest are in summary.json.
+void print_results(const Summary& summary) {
+  constexpr std::array names{
+      "stones",   "contacts",   "coordination_number", "contact_force_mean", "contact_force_max",
+      "porosity", "bed_height", "unbalanced_ratio"};
+  std::vector<Result> shown;
+  for (const Result& r : summary.measures) {
+    const auto dot = r.name.find('.');
+    const bool of_stage = std::ranges::any_of(summary.stages, [&](const StageSummary& s) {
+      return r.name.starts_with(s.name + ".") &&
+             std::ranges::find(s.results, r.name.substr(s.name.size() + 1), &Result::name) != s.results.end();
+    });
+    if (of_stage || (dot == std::string::npos && std::ranges::find(names, r.name) != names.end()))
+      shown.push_back(r);
+  }
+  std::size_t width = 0;
+  for (const Result& r : shown) width = std::max(width, r.name.size());
+  for (const Result& r : shown)
+    fmt::print("  {:{}}  {:>12.6g} {}\n", r.name, width, r.value, si_unit_of(r.dimension));
+}
+
+}  // namespace
+
+int run_command(int argc, char** argv) {
+  std::filesystem::path file, out;
+  std::vector<std::string> overrides;
+  RunOptions options;
+  CLI::App app("Runs a case and writes its results.", "trackbed run");
+  app.add_option("case", file, "the case file (TOML)")->required();
+  app.add_option("--out", out, "folder of the results; default: out/NAME of the case's folder");
+  app.add_option("--set", overrides, "change a value of the case: stages.load.duration='2 s'")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--threads", options.threads, "number of threads; 0: one for each core")
+      ->check(CLI::Range(0, 4096));
+  app.add_flag("--quiet", options.quiet, "print nothing but errors");
+  if (const auto code = parse(app, argc, argv)) return *code;
+
+  const Document document(file, overrides);
+  CaseInput experiment;
+  document.read(experiment);
+  options.out = out.empty()
+                    ? std::filesystem::path("out") / std::filesystem::absolute(file).parent_path().filename()
+                    : out;
+  options.progress = stderr;
+  const Summary summary = run(document, experiment, options);
+  if (options.quiet) return 0;
+  fmt::print("{}: {} stages in {}\n", experiment.title, summary.stages.size(), duration_text(summary.wall));
+  print_results(summary);
+  fmt::print("results: {}\n", options.out.string());
+  return 0;
+}
+
+}  // namespace trackbed
