@@ -14,43 +14,72 @@ namespace {
 
 using Index = std::size_t;
 
-/// Adds a contact's share: k_n along the normal, k_s across it, and the rolling spring across it.
+/// Adds a contact's share: k_n along the normal, k_s across it, the rolling spring across it, and its dashpots.
 void add_contact(const Touching& t, const Vec3& lever, const Mat3& axes, DiagonalStiffness& k) {
   const ContactProperties& p = *t.properties;
-  const double kr =
-      p.law == LawKind::linear_rolling ? LinearRolling::rolling_stiffness(p, t.radius) : 0.0;
+  const double kr = p.law == LawKind::linear_rolling ? LinearRolling::rolling_stiffness(p, t.radius) : 0.0;
+  const double cn = 2.0 * p.dashpot.normal * std::sqrt(t.reduced_mass * p.kn);
+  const double cs = 2.0 * p.dashpot.shear * std::sqrt(t.reduced_mass * p.ks);
   for (int a = 0; a < 3; ++a) {
-    const double n = t.normal[a];
-    k.shift[a] += p.kn * n * n + p.ks * (1.0 - n * n);
+    const double n2 = t.normal[a] * t.normal[a];
+    k.shift[a] += p.kn * n2 + p.ks * (1.0 - n2);
+    k.viscous_shift[a] += cn * n2 + cs * (1.0 - n2);
     const Vec3 axis = axes.col(a);
     const Vec3 motion = axis.cross(lever);
-    const double along = t.normal.dot(motion);
-    const double turned = axis.dot(t.normal);
-    k.turn[a] += p.kn * along * along + p.ks * (motion.squaredNorm() - along * along) + kr * (1.0 - turned * turned);
+    const double along2 = std::pow(t.normal.dot(motion), 2), across2 = motion.squaredNorm() - along2;
+    k.turn[a] += p.kn * along2 + p.ks * across2 + kr * (1.0 - std::pow(axis.dot(t.normal), 2));
+    k.viscous_turn[a] += cn * along2 + cs * across2;
   }
 }
 
-/// Largest shortening of the step by dashpots of this critical ratio.
-double dashpot_factor(const PairTable& pairs) {
-  double ratio = 0;
-  for (int a = 0; a < pairs.size(); ++a)
-    for (int b = 0; b < pairs.size(); ++b)
-      ratio = std::max({ratio, pairs(a, b).dashpot.normal, pairs(a, b).dashpot.shear});
-  return std::sqrt(1.0 + ratio * ratio) - ratio;
+/// 1/omega of one degree of freedom, shortened by its own critical ratio [s].
+double limit_of(double stiffness, double viscous, double mass) {
+  if (stiffness <= 0) return std::numeric_limits<double>::infinity();
+  const double omega = std::sqrt(stiffness / mass);
+  const double ratio = 0.5 * viscous / (mass * omega);
+  return (std::sqrt(1.0 + ratio * ratio) - ratio) / omega;
 }
 
 double shortest(const DiagonalStiffness& k, double mass, const Vec3& inertia) {
-  double ratio = 0;  // K/m of the stiffest degree of freedom
-  for (int a = 0; a < 3; ++a) ratio = std::max({ratio, k.shift[a] / mass, k.turn[a] / inertia[a]});
-  return ratio > 0 ? 1.0 / std::sqrt(ratio) : std::numeric_limits<double>::infinity();
+  double limit = std::numeric_limits<double>::infinity();
+  for (int a = 0; a < 3; ++a)
+    limit = std::min({limit, limit_of(k.shift[a], k.viscous_shift[a], mass),
+                      limit_of(k.turn[a], k.viscous_turn[a], inertia[a])});
+  return limit;
 }
 
-/// A stone that touches nothing may touch anything within the step: as if the stiffest contact were made.
-void floor_stiffness(const Model& model, const Clumps& c, Index i, DiagonalStiffness& k) {
-  const double stiffest = model.pairs.stiffest(c.material[i]);
-  const double reach = model.templates[static_cast<Index>(c.shape[i])].bounding_radius * c.scale[i];
+/// A body that touches nothing may touch anything within the step: as if the stiffest contact were made at its
+/// farthest point, whose rolling spring is no stiffer than its shear spring there.
+void floor_stiffness(const PairTable& pairs, int material, double reach, double mass, DiagonalStiffness& k) {
+  const double stiffest = pairs.stiffest(material);
+  bool rolls = false;
+  double ratio = 0;
+  for (int other = 0; other < pairs.size(); ++other) {
+    const ContactProperties& p = pairs(material, other);
+    rolls = rolls || p.law == LawKind::linear_rolling;
+    ratio = std::max({ratio, p.dashpot.normal, p.dashpot.shear});
+  }
+  const double viscous = 2.0 * ratio * std::sqrt(mass * stiffest);
   k.shift = k.shift.cwiseMax(stiffest);
-  k.turn = k.turn.cwiseMax(stiffest * reach * reach);
+  k.viscous_shift = k.viscous_shift.cwiseMax(viscous);
+  k.turn = k.turn.cwiseMax((rolls ? 2.0 : 1.0) * stiffest * reach * reach);
+  k.viscous_turn = k.viscous_turn.cwiseMax(viscous * reach * reach);
+}
+
+double limit_of_clump(const Model& model, const State& state, const Workspace& work, Index c) {
+  DiagonalStiffness k = stiffness_of(model, state, work, static_cast<int>(c));
+  floor_stiffness(model.pairs, state.clumps.material[c], work.bound[c], state.clumps.mass[c], k);
+  return shortest(k, state.clumps.mass[c], state.clumps.inertia[c]);
+}
+
+double limit_of_body(const Model& model, const State& state, const Workspace& work, Index w) {
+  const BodyProperties& body = *model.walls[w].body;
+  DiagonalStiffness k = stiffness_of_wall(model, state, work, static_cast<int>(w));
+  floor_stiffness(model.pairs, model.walls[w].material, model.walls[w].shape.reach, body.mass, k);
+  for (int a = 0; a < 3; ++a)
+    if (!body.free_shift[static_cast<Index>(a)]) k.shift[a] = 0;
+  if (!(body.free_turn[0] || body.free_turn[1] || body.free_turn[2])) k.turn = Vec3::Zero();
+  return shortest(k, body.mass, body.inertia);
 }
 
 StableStep kinematic_step(const Model& model, const State& state, const Workspace& work) {
@@ -67,9 +96,14 @@ StableStep kinematic_step(const Model& model, const State& state, const Workspac
       step.clump = static_cast<int>(i);
     }
   }
-  for (Index w = 0; w < state.walls.size(); ++w)
-    speed = std::max(speed, state.walls[w].velocity.norm() +
-                                model.walls[w].shape.reach * state.walls[w].angular_velocity.norm());
+  for (Index w = 0; w < state.walls.size(); ++w) {
+    const WallState& wall = state.walls[w];
+    if (!wall.present) continue;
+    speed = std::max(speed, wall.velocity.norm() + model.walls[w].shape.reach * wall.angular_velocity.norm());
+    if (const auto& body = model.walls[w].body)
+      acceleration =
+          std::max(acceleration, ((wall.force + wall.applied_force) / body->mass + model.gravity).norm());
+  }
   const double travel = model.time_step.largest_travel * length;
   const double root = std::sqrt(speed * speed + 2.0 * acceleration * travel);
   if (speed + root > 0) step.dt = 2.0 * travel / (speed + root);
@@ -116,27 +150,16 @@ StableStep stable_step(const Model& model, const State& state, const Workspace& 
   const Clumps& c = state.clumps;
   std::vector<double> dt(c.id.size());
 #pragma omp parallel for schedule(static) if (c.size() > 64)
-  for (int i = 0; i < c.size(); ++i) {
-    const Index k = static_cast<Index>(i);
-    DiagonalStiffness stiffness = stiffness_of(model, state, work, i);
-    floor_stiffness(model, c, k, stiffness);
-    dt[k] = shortest(stiffness, c.mass[k], c.inertia[k]);
-  }
+  for (int i = 0; i < c.size(); ++i)
+    dt[static_cast<Index>(i)] = limit_of_clump(model, state, work, static_cast<Index>(i));
   for (Index i = 0; i < dt.size(); ++i)
     if (dt[i] < step.dt) step = {dt[i], static_cast<int>(i), false};
-
   for (Index w = 0; w < model.walls.size(); ++w) {
-    const auto& body = model.walls[w].body;
-    if (!body) continue;
-    DiagonalStiffness k = stiffness_of_wall(model, state, work, static_cast<int>(w));
-    for (int a = 0; a < 3; ++a) {
-      if (!body->free_shift[static_cast<Index>(a)]) k.shift[a] = 0;
-      if (!(body->free_turn[0] || body->free_turn[1] || body->free_turn[2])) k.turn[a] = 0;
-    }
-    const double limit = shortest(k, body->mass, body->inertia);
+    if (!model.walls[w].body || !state.walls[w].present) continue;
+    const double limit = limit_of_body(model, state, work, w);
     if (limit < step.dt) step = {limit, -1, false};
   }
-  step.dt *= model.time_step.safety * dashpot_factor(model.pairs);
+  step.dt *= model.time_step.safety;
 
   const StableStep kinematic = kinematic_step(model, state, work);
   return kinematic.dt < step.dt ? kinematic : step;

@@ -10,10 +10,13 @@
 
 namespace trackbed {
 
-/// Diagonal stiffness of one body: translation in world axes [N/m], rotation about its principal axes [N m/rad].
+/// Diagonal stiffness of one body: translation in world axes [N/m], rotation about its principal axes [N m/rad];
+/// and the same of its dashpots [N s/m], [N m s/rad].
 struct DiagonalStiffness {
   Vec3 shift = Vec3::Zero();
   Vec3 turn = Vec3::Zero();
+  Vec3 viscous_shift = Vec3::Zero();
+  Vec3 viscous_turn = Vec3::Zero();
 };
 
 /// Of stone `clump`, from its touching contacts.

@@ -20,6 +20,7 @@ struct Touching {
   Vec3 point;                           // middle of the overlap [m]
   Vec3 lever_1, lever_2;                // from the centre of mass, or the wall's origin, to the point [m]
   double radius;                        // effective [m]
+  double reduced_mass;                  // m1 m2/(m1 + m2); the stone's against a wall without mass [kg]
   const ContactProperties* properties;
   const ContactMemory* memory;
 
@@ -53,6 +54,7 @@ void visit_pair(const Model& model, const State& state, const PairBlock& block, 
     t.lever_2 = t.lever_1 - (c.position[j] - c.position[i]);
     t.point = c.position[i] + t.lever_1;
     t.radius = r1 * r2 / (r1 + r2);
+    t.reduced_mass = c.mass[i] * c.mass[j] / (c.mass[i] + c.mass[j]);
     t.properties = &model.pairs(c.material[i], c.material[j]);
     t.memory = &m;
     visit(t);
@@ -80,6 +82,8 @@ void visit_pair(const Model& model, const State& state, const WallBlock& block, 
       t.lever_1 = c.orientation[i] * (c.scale[i] * pebble.centre) + (t.radius - 0.5 * m.overlap) * m.normal;
       t.lever_2 = t.lever_1 - (state.walls[w].pose.position - c.position[i]);
       t.point = c.position[i] + t.lever_1;
+      t.reduced_mass = c.mass[i];
+      if (const auto& body = model.walls[w].body) t.reduced_mass *= body->mass / (body->mass + c.mass[i]);
       t.properties = &model.pairs(c.material[i], model.walls[w].material);
       t.memory = &m;
       visit(t);
