@@ -39,7 +39,7 @@ Simulation falling_stones(int n) {
   return sim;
 }
 
-constexpr int steps = 3500;
+constexpr int steps = 6000;
 
 std::uint64_t run(Simulation sim, const std::function<void(Simulation&, int)>& meddle = {}) {
   for (int k = 0; k < steps; ++k) {
