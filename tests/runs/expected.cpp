@@ -1,0 +1,46 @@
+#include "expected.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace trackbed {
+
+void declare(Fields& f, ExpectedMeasure& in) {
+  f.text(required("name"), in.name, "as in summary.json");
+  f.number(required("value"), in.value, {}, "in SI");
+  f.number(required("tolerance"), in.tolerance, {.at_least = 0}, "largest deviation, in SI");
+  f.text(required("reason"), in.reason, "why this tolerance");
+}
+
+void declare(Fields& f, Expected& in) {
+  f.texts("set", in.set, "changes that make the case short");
+  f.sequence(required("measures"), in.measures, "what must come out");
+}
+
+double value_of(const std::vector<Result>& results, const std::string& name) {
+  const auto found = std::ranges::find(results, name, &Result::name);
+  return found == results.end() ? std::numeric_limits<double>::quiet_NaN() : found->value;
+}
+
+const StageSummary& stage_of(const Summary& summary, const std::string& name) {
+  const auto found = std::ranges::find(summary.stages, name, &StageSummary::name);
+  if (found == summary.stages.end()) throw std::runtime_error("there is no stage " + name);
+  return *found;
+}
+
+Summary run_and_compare(const std::string& name, const std::filesystem::path& out) {
+  const std::filesystem::path folder = std::filesystem::path(TRACKBED_ROOT) / "cases" / name;
+  const auto expected = read_input<Expected>(folder / "expected.toml");
+  const Document document(folder / "case.toml", expected.set);
+  CaseInput experiment;
+  document.read(experiment);
+  const Summary summary = run(document, experiment, {.out = out, .threads = 1, .quiet = true});
+  for (const ExpectedMeasure& m : expected.measures)
+    EXPECT_NEAR(value_of(summary.measures, m.name), m.value, m.tolerance) << m.name << ": " << m.reason;
+  return summary;
+}
+
+}  // namespace trackbed
