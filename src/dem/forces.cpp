@@ -52,19 +52,26 @@ void distances(const PairFrame& f, const double* columns, int n, int from, int t
   }
 }
 
-/// Ends a contact: what its springs held becomes heat.
-void open_contact(const ContactProperties& p, double radius, ContactMemory& memory, Losses& losses) {
+/// Ends a contact. Its last force goes on acting in the step in which it opens, on average by half: what its
+/// springs held and did not give back so becomes heat.
+void open_contact(const ContactProperties& p, const ContactKinematics& k, ContactMemory& memory,
+                  Losses& losses) {
   if (p.ks > 0) {
-    losses.friction += memory.shear.squaredNorm() / (2.0 * p.ks);
+    losses.friction += memory.shear.squaredNorm() / (2.0 * p.ks) - 0.5 * k.dt * memory.shear.dot(k.velocity);
     if (p.law == LawKind::linear_rolling)
-      losses.rolling += memory.rolling.squaredNorm() / (2.0 * p.ks * radius * radius);
+      losses.rolling += memory.rolling.squaredNorm() / (2.0 * LinearRolling::rolling_stiffness(p, k.radius)) -
+                        0.5 * k.dt * memory.rolling.dot(k.spin);
   }
   memory = {};
 }
 
-template <class Law>
-void touch(const PairFrame& f, const ContactProperties& p, const double* columns, int n, int k,
-           ContactMemory& memory, PairResult& out) {
+/// The levers of one contact, and its motion.
+struct PairContact {
+  Vec3 lever_i, lever_j;
+  ContactKinematics kinematics;
+};
+
+PairContact contact_of(const PairFrame& f, const double* columns, int n, int k) {
   const Vec3 a(columns[k], columns[n + k], columns[2 * n + k]);
   const Vec3 b(columns[3 * n + k], columns[4 * n + k], columns[5 * n + k]);
   const double reach = columns[6 * n + k], radius_i = columns[7 * n + k];
@@ -73,22 +80,28 @@ void touch(const PairFrame& f, const ContactProperties& p, const double* columns
   const Vec3 normal_i = apart / distance;
   const double overlap = reach - distance;
 
-  ContactKinematics c;
+  PairContact contact;
+  ContactKinematics& c = contact.kinematics;
   c.overlap = overlap;
   c.normal = f.rotation_i * normal_i;
-  const Vec3 lever_i = f.rotation_i * (a + (radius_i - 0.5 * overlap) * normal_i);
-  const Vec3 lever_j = lever_i - f.shift;
-  c.velocity = f.velocity_j + f.spin_j.cross(lever_j) - f.velocity_i - f.spin_i.cross(lever_i);
+  contact.lever_i = f.rotation_i * (a + (radius_i - 0.5 * overlap) * normal_i);
+  contact.lever_j = contact.lever_i - f.shift;
+  c.velocity =
+      f.velocity_j + f.spin_j.cross(contact.lever_j) - f.velocity_i - f.spin_i.cross(contact.lever_i);
   c.spin = f.spin_j - f.spin_i;
   c.mean_twist = 0.5 * (f.spin_i + f.spin_j).dot(c.normal);
   c.radius = radius_i * (reach - radius_i) / reach;
   c.reduced_mass = f.reduced_mass;
   c.dt = f.dt;
+  return contact;
+}
 
-  const ContactForce response = Law::respond(c, p, memory, out.losses);
+template <class Law>
+void touch(const PairContact& contact, const ContactProperties& p, ContactMemory& memory, PairResult& out) {
+  const ContactForce response = Law::respond(contact.kinematics, p, memory, out.losses);
   out.force += response.force;
-  out.moment_j += lever_j.cross(response.force);
-  out.moment_i -= lever_i.cross(response.force);
+  out.moment_j += contact.lever_j.cross(response.force);
+  out.moment_i -= contact.lever_i.cross(response.force);
   if constexpr (Law::rolls) {
     out.moment_j += response.moment;
     out.moment_i -= response.moment;
@@ -108,10 +121,9 @@ PairResult pair_forces(const PairFrame& f, const ContactProperties& p, const dou
     distances(f, columns, n, from, to, distance2.data());
     for (int k = from; k < to; ++k) {
       if (distance2[static_cast<Index>(k - from)] < reach[k] * reach[k]) {
-        touch<Law>(f, p, columns, n, k, memory[k], out);
+        touch<Law>(contact_of(f, columns, n, k), p, memory[k], out);
       } else if (memory[k].touches()) {
-        const double radius_i = columns[7 * n + k];
-        open_contact(p, radius_i * (reach[k] - radius_i) / reach[k], memory[k], out.losses);
+        open_contact(p, contact_of(f, columns, n, k).kinematics, memory[k], out.losses);
       }
     }
   }
@@ -138,7 +150,33 @@ struct WallFrame {
   Mat3 clump_rotation, wall_rotation, turn;  // turn: clump's frame to the wall's
   Vec3 offset;                               // of the clump in the wall's frame
   Vec3 shift;                                // clump to wall origin, world
+  Vec3 velocity_clump, velocity_wall, spin_clump, spin_wall;
+  double reduced_mass, dt;
 };
+
+/// The levers of one contact with a wall, to the middle of the overlap, and its motion.
+struct WallContact {
+  Vec3 lever_clump, lever_wall;
+  ContactKinematics kinematics;
+};
+
+WallContact contact_of(const WallFrame& f, const WallCandidate& candidate, const Vec3& normal,
+                       double overlap) {
+  WallContact contact;
+  contact.lever_clump = f.clump_rotation * candidate.centre + (candidate.radius - 0.5 * overlap) * normal;
+  contact.lever_wall = contact.lever_clump - f.shift;
+  ContactKinematics& k = contact.kinematics;
+  k.overlap = overlap;
+  k.normal = normal;
+  k.velocity = f.velocity_wall + f.spin_wall.cross(contact.lever_wall) - f.velocity_clump -
+               f.spin_clump.cross(contact.lever_clump);
+  k.spin = f.spin_wall - f.spin_clump;
+  k.mean_twist = 0.5 * (f.spin_wall + f.spin_clump).dot(normal);
+  k.radius = candidate.radius;
+  k.reduced_mass = f.reduced_mass;
+  k.dt = f.dt;
+  return contact;
+}
 
 /// Unit vector from the pebble to the wall. A plane is only ever met from above; with the centre on a facet
 /// the pebble is taken to come from the facet's front.
@@ -150,12 +188,8 @@ Vec3 towards_wall(const WallShape& shape, const WallPoint& q, const Vec3& centre
 }
 
 template <class Law>
-void touch_wall(const Model& model, const State& state, const WallFrame& f, const WallPair& pair,
-                const WallCandidate& candidate, const int* facets, double dt, WallMemory& memory,
-                WallResult& out) {
-  const Index c = static_cast<Index>(pair.clump), w = static_cast<Index>(pair.wall);
-  const WallShape& shape = model.walls[w].shape;
-  const ContactProperties& p = model.pairs(state.clumps.material[c], model.walls[w].material);
+void touch_wall(const WallShape& shape, const ContactProperties& p, const WallFrame& f,
+                const WallCandidate& candidate, const int* facets, WallMemory& memory, WallResult& out) {
   const Vec3 centre = f.offset + f.turn * candidate.centre;
   WallPoints points;
   const int n = touching_points(shape, facets + candidate.first_facet, candidate.n_facets, centre,
@@ -165,33 +199,19 @@ void touch_wall(const Model& model, const State& state, const WallFrame& f, cons
   for (int m = 0; m < n; ++m) {
     const WallPoint& q = points[static_cast<Index>(m)];
     const Vec3 normal_wall = towards_wall(shape, q, centre, candidate.radius);
-    ContactKinematics k;
-    k.normal = f.wall_rotation * normal_wall;
-    k.overlap = candidate.radius - q.distance;
-    // Levers to the middle of the overlap.
-    const Vec3 lever_clump =
-        f.clump_rotation * candidate.centre + (candidate.radius - 0.5 * k.overlap) * k.normal;
-    const Vec3 lever_wall = lever_clump - f.shift;
-    const WallState& wall = state.walls[w];
-    k.velocity = wall.velocity + wall.angular_velocity.cross(lever_wall) - state.clumps.velocity[c] -
-                 state.clumps.angular_velocity[c].cross(lever_clump);
-    k.spin = wall.angular_velocity - state.clumps.angular_velocity[c];
-    k.mean_twist = 0.5 * (wall.angular_velocity + state.clumps.angular_velocity[c]).dot(k.normal);
-    k.radius = candidate.radius;
-    k.reduced_mass = state.clumps.mass[c];
-    if (const auto& body = model.walls[w].body) k.reduced_mass *= body->mass / (body->mass + k.reduced_mass);
-    k.dt = dt;
-
+    const WallContact contact =
+        contact_of(f, candidate, f.wall_rotation * normal_wall, candidate.radius - q.distance);
     ContactMemory& kept = now.points[static_cast<Index>(m)];
-    kept = take_memory(memory, k.normal);
-    const ContactForce response = Law::respond(k, p, kept, out.losses);
+    kept = take_memory(memory, contact.kinematics.normal);
+    const ContactForce response = Law::respond(contact.kinematics, p, kept, out.losses);
     out.force += response.force;
-    out.moment_wall += lever_wall.cross(response.force) + response.moment;
-    out.moment_clump -= lever_clump.cross(response.force) + response.moment;
+    out.moment_wall += contact.lever_wall.cross(response.force) + response.moment;
+    out.moment_clump -= contact.lever_clump.cross(response.force) + response.moment;
     ++out.contacts;
   }
   for (ContactMemory& gone : memory.points)
-    if (gone.touches()) open_contact(p, candidate.radius, gone, out.losses);
+    if (gone.touches())
+      open_contact(p, contact_of(f, candidate, gone.normal, 0.0).kinematics, gone, out.losses);
   memory = now;
 }
 
@@ -206,9 +226,17 @@ WallResult wall_forces(const Model& model, const State& state, const Workspace& 
   f.turn = f.wall_rotation.transpose() * f.clump_rotation;
   f.shift = state.walls[w].pose.position - state.clumps.position[c];
   f.offset = f.wall_rotation.transpose() * -f.shift;
+  f.velocity_clump = state.clumps.velocity[c];
+  f.velocity_wall = state.walls[w].velocity;
+  f.spin_clump = state.clumps.angular_velocity[c];
+  f.spin_wall = state.walls[w].angular_velocity;
+  f.reduced_mass = state.clumps.mass[c];
+  if (const auto& body = model.walls[w].body) f.reduced_mass *= body->mass / (body->mass + f.reduced_mass);
+  f.dt = dt;
+  const ContactProperties& p = model.pairs(state.clumps.material[c], model.walls[w].material);
   for (int k = pair.first; k < pair.first + pair.count; ++k)
-    touch_wall<Law>(model, state, f, pair, geometry.candidates[static_cast<Index>(k)], geometry.facets.data(),
-                    dt, block.memory[static_cast<Index>(k)], out);
+    touch_wall<Law>(model.walls[w].shape, p, f, geometry.candidates[static_cast<Index>(k)],
+                    geometry.facets.data(), block.memory[static_cast<Index>(k)], out);
   return out;
 }
 

@@ -1,5 +1,6 @@
 // The engine's contact forces against a second, plain answer: every pebble with every pebble and plane, no
-// search, the law written down once more with a memory of its own.
+// search, the law written down once more with a memory of its own. Rounding leaves 3e-13 of the largest
+// force.
 #include <gtest/gtest.h>
 
 #include <array>

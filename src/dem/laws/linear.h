@@ -1,5 +1,5 @@
-// The linear contact law with Coulomb friction (Cundall & Strack 1979), in the absolute form of PFC's "linear"
-// model, and its dashpots.
+// The linear contact law with Coulomb friction (Cundall & Strack 1979), in the absolute form of PFC's
+// "linear" model, and its dashpots.
 #pragma once
 
 #include <algorithm>
@@ -21,19 +21,21 @@ struct Linear {
                               Losses& losses) {
     const double normal_force = p.kn * k.overlap;
     const double opening = k.velocity.dot(k.normal);
-    const Vec3 sliding = (k.velocity - opening * k.normal) * (active_share(k, memory, opening) * k.dt);
-    const Vec3 before =
-        memory.touches() ? carry_along(memory.shear, memory.normal, k.normal, k.mean_twist * k.dt) : Vec3::Zero();
+    const Vec3 sliding = (k.velocity - opening * k.normal) * k.dt;
+    const double share = active_share(k, memory, opening);
+    const Vec3 before = memory.touches()
+                            ? carry_along(memory.shear, memory.normal, k.normal, k.mean_twist * k.dt)
+                            : Vec3::Zero();
 
-    // Elastic increment, cut to the Coulomb cone; the work of the cut part is lost.
-    Vec3 shear = before - p.ks * sliding;
+    // Elastic increment, cut to the Coulomb cone. What the force takes over the whole step and the spring
+    // does not store is lost: the work of the cut part, and of the way before a contact closed.
+    Vec3 shear = before - p.ks * share * sliding;
     const double limit = p.friction * normal_force;
     const double trial2 = shear.squaredNorm();
     const bool slips = trial2 > limit * limit;
-    if (slips) {
-      shear *= limit / std::sqrt(trial2);
-      if (p.ks > 0) losses.friction -= 0.5 * (before + shear).dot(sliding + (shear - before) / p.ks);
-    }
+    if (slips) shear *= limit / std::sqrt(trial2);
+    if (p.ks > 0 && (slips || share < 1.0))
+      losses.friction -= 0.5 * (before + shear).dot(sliding + (shear - before) / p.ks);
     memory.overlap = k.overlap;
     memory.normal = k.normal;
     memory.shear = shear;

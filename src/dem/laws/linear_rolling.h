@@ -21,21 +21,23 @@ struct LinearRolling {
     ContactForce out = Linear::respond(k, p, memory, losses);
 
     const double stiffness = rolling_stiffness(p, k.radius);
-    const Vec3 bend = (k.spin - k.spin.dot(k.normal) * k.normal) * (share * k.dt);
-    Vec3 moment = before - stiffness * bend;
+    const Vec3 bend = (k.spin - k.spin.dot(k.normal) * k.normal) * k.dt;
+    Vec3 moment = before - stiffness * share * bend;
     const double limit = p.rolling_friction * k.radius * p.kn * k.overlap;
     const double trial2 = moment.squaredNorm();
-    if (trial2 > limit * limit) {
-      moment *= limit / std::sqrt(trial2);
-      if (stiffness > 0) losses.rolling -= 0.5 * (before + moment).dot(bend + (moment - before) / stiffness);
-    }
+    const bool slips = trial2 > limit * limit;
+    if (slips) moment *= limit / std::sqrt(trial2);
+    if (stiffness > 0 && (slips || share < 1.0))
+      losses.rolling -= 0.5 * (before + moment).dot(bend + (moment - before) / stiffness);
     memory.rolling = moment;
     out.moment += moment;
     return out;
   }
 
   /// k_r = k_s R^2 [N m/rad].
-  static double rolling_stiffness(const ContactProperties& p, double radius) { return p.ks * radius * radius; }
+  static double rolling_stiffness(const ContactProperties& p, double radius) {
+    return p.ks * radius * radius;
+  }
 };
 
 }  // namespace trackbed
