@@ -1,9 +1,11 @@
 // The program: each subcommand reads its own command line. Exits 0 when done, 1 for a run that failed, 2 for
 // wrong input.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <string_view>
 
@@ -37,9 +39,18 @@ int dispatch(int argc, char** argv) {
   return asked ? 0 : 2;
 }
 
+/// Threads wait for each other several times a step. On a machine shared with other work, long spinning keeps the
+/// cores from whoever has work; the OpenMP library reads how long to spin once, when it is loaded.
+void wait_politely(char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  ::setenv("GOMP_SPINCOUNT", "20000", 1);
+  ::execv("/proc/self/exe", argv);  // returns only when it fails; then all goes on, with the longer wait
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  wait_politely(argv);
   try {
     return dispatch(argc, argv);
   } catch (const trackbed::InputError& error) {

@@ -14,20 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box";
-
-/// One run for all tests of this file.
-const Summary& summary() {
-  static const Summary made = run_and_compare("cyclic-box", out);
-  return made;
-}
-
-TEST(CyclicBox, MeasuresAreAsExpected) {
-  EXPECT_EQ(summary().stages.size(), 7u);
-}
-
-TEST(CyclicBox, BoxCarriesStonesSleeperAndLoad) {
-  const StageSummary& rest = stage_of(summary(), "before");
+void box_carries_stones_sleeper_and_load(const Summary& summary) {
+  const StageSummary& rest = stage_of(summary, "before");
   double carried = 0;
   for (const char* side : {"floor", "left", "right", "front", "back"})
     carried -= value_of(rest.measures, std::string("box.") + side + ".force_z");
@@ -36,29 +24,26 @@ TEST(CyclicBox, BoxCarriesStonesSleeperAndLoad) {
   EXPECT_NEAR(carried, all, 1e-3 * all);
 }
 
-TEST(CyclicBox, NoStoneIsLost) {
-  const double added = value_of(stage_of(summary(), "fill").results, "added");
-  const double removed = value_of(stage_of(summary(), "insert").results, "removed");
-  EXPECT_GT(added, 100);
-  EXPECT_EQ(value_of(summary().measures, "stones"), added - removed);
+void no_stone_is_lost(const Summary& summary, const fs::path& out) {
+  const double added = value_of(stage_of(summary, "fill").results, "added");
+  const double removed = value_of(stage_of(summary, "insert").results, "removed");
+  EXPECT_EQ(value_of(summary.measures, "stones"), added - removed);
   const std::string table = read_file(out / "stones.csv");
   EXPECT_EQ(std::ranges::count(table, '\n'), std::lround(added - removed) + 1);  // and the header
 }
 
-TEST(CyclicBox, EnergyBalanceOfTheLoadCloses) {
-  EXPECT_LT(std::abs(value_of(stage_of(summary(), "cyclic").results, "energy_error")), 0.01);
+void energy_balance_of_the_load_closes(const Summary& summary) {
+  EXPECT_LT(std::abs(value_of(stage_of(summary, "cyclic").results, "energy_error")), 0.01);
 }
 
-TEST(CyclicBox, LeavesAllFiles) {
-  summary();
+void leaves_all_files(const fs::path& out) {
   for (const char* file :
        {"series.csv", "summary.json", "contacts.csv", "stones.csv", "bed.png", "forces.png",
         "paraview/stones.pvd", "paraview/contacts.pvd", "paraview/walls.pvd"})
     EXPECT_GT(fs::exists(out / file) ? fs::file_size(out / file) : 0u, 100u) << file;
 }
 
-TEST(CyclicBox, SummaryTellsTheRun) {
-  summary();
+void summary_tells_the_run(const fs::path& out) {
   const auto json = nlohmann::json::parse(read_file(out / "summary.json"));
   EXPECT_EQ(json["title"], "Cyclic ballast-box test");
   EXPECT_FALSE(json["version"].get<std::string>().empty());
@@ -75,6 +60,45 @@ TEST(CyclicBox, SummaryTellsTheRun) {
     EXPECT_TRUE(stage["simulated_s"].is_number()) << stage["name"];
     EXPECT_TRUE(stage["wall_s"].is_number()) << stage["name"];
   }
+}
+
+void expect_sound(const Summary& summary, const fs::path& out) {
+  box_carries_stones_sleeper_and_load(summary);
+  no_stone_is_lost(summary, out);
+  energy_balance_of_the_load_closes(summary);
+  leaves_all_files(out);
+  summary_tells_the_run(out);
+}
+
+TEST(cyclic_box, short_form_gives_what_the_case_expects) {
+  const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box";
+  expect_sound(run_and_compare("cyclic-box", out), out);
+}
+
+Summary run_whole(const std::vector<std::string>& set, int threads, const fs::path& out) {
+  const Document document(TRACKBED_ROOT "/cases/cyclic-box/case.toml", set);
+  CaseInput experiment;
+  document.read(experiment);
+  return run(document, experiment, {.out = out, .threads = threads, .quiet = true});
+}
+
+// The whole test at full load with some 430 pebbles a stone, on the default stones and on scans.
+TEST(cyclic_box, long_whole_run_is_sound_and_the_same_for_any_number_of_threads) {
+  const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box-whole";
+  const std::vector<std::string> calm{"stages.before.unbalanced_ratio=1e-4"};
+  const Summary two = run_whole(calm, 2, out);
+  expect_sound(two, out);
+  EXPECT_EQ(run_whole(calm, 1, out).state_hash, two.state_hash);
+  EXPECT_EQ(run_whole(calm, 4, out).state_hash, two.state_hash);
+}
+
+TEST(cyclic_box, long_whole_run_on_scans_is_sound) {
+  if (!fs::exists(TRACKBED_STONES)) GTEST_SKIP() << "the folder of scans is not here: " << TRACKBED_STONES;
+  const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box-scans";
+  expect_sound(run_whole({std::string("stones.files=\"") + TRACKBED_STONES + "/epfl_stonepacking3d/*.obj\"",
+                          "stages.before.unbalanced_ratio=1e-4"},
+                         2, out),
+               out);
 }
 
 }  // namespace
