@@ -18,7 +18,7 @@ constexpr double pi = std::numbers::pi;
 TEST(normal_contact, two_balls_exchange_their_speeds) {
   // Leapfrog is second order: 1.2e-3 of overlap at dt* = 0.1 is the distance of the peak from the nearest
   // step.
-  for (const auto& [step, tolerance] : {std::pair{0.1, 1e-3}, std::pair{0.02, 4e-5}}) {
+  for (const auto& [step, tolerance] : {std::pair{0.1, 7e-4}, std::pair{0.02, 2e-5}}) {
     Setting a;
     a.dt = step * scenes::contact_time_scale(a);
     Simulation sim = scenes::make_scene(a);
@@ -59,14 +59,14 @@ TEST(normal_contact, dashpots_give_the_restitution_of_their_mode) {
     const double may_pull = std::exp(-pi * root);
     const double no_pull = std::exp(-root * (pi - 2 * std::asin(ratio)));
     // The dashpot sees the velocity half a step old: first order in the step, up to 0.2 dt* (1e-3), by
-    // where in a step the contact closes.
+    // where in a step the contact closes; measured 4.5e-4 without pull, 8.4e-4 with, halving with the step.
     const double tolerance = 1e-3;
     if (ratio < 0.8) {
       EXPECT_NEAR(rebound(ratio, DashpotMode::full, 0.005), may_pull, tolerance) << ratio;
       EXPECT_NEAR(rebound(ratio, DashpotMode::full_slip_cut, 0.005), may_pull, tolerance) << ratio;
     }
-    EXPECT_NEAR(rebound(ratio, DashpotMode::no_tension, 0.005), no_pull, tolerance) << ratio;
-    EXPECT_NEAR(rebound(ratio, DashpotMode::no_tension_slip_cut, 0.005), no_pull, tolerance) << ratio;
+    EXPECT_NEAR(rebound(ratio, DashpotMode::no_tension, 0.005), no_pull, 0.5 * tolerance) << ratio;
+    EXPECT_NEAR(rebound(ratio, DashpotMode::no_tension_slip_cut, 0.005), no_pull, 0.5 * tolerance) << ratio;
     EXPECT_NEAR(rebound(ratio, DashpotMode::no_tension, 0.1), no_pull, 1.5e-2) << ratio;
   }
 }
