@@ -1,35 +1,15 @@
-// Level two of the search: the candidates of one pair, by walking the two trees against each other.
+// Level two of the search for two stones: their two trees are walked against each other.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "dem/pair_motion.h"
 #include "dem/search.h"
 
 namespace trackbed {
 namespace {
 
 using Index = std::size_t;
-
-// A pair is looked through again when less than this share of its skin is left, rather than measured each
-// step.
-constexpr double nearly_used_up = 0.25;
-
-/// Pose of one body in the frame of another.
-struct Relative {
-  Vec3 offset;
-  Quat turn;
-};
-
-Relative relative_pose(const Vec3& x1, const Quat& q1, const Vec3& x2, const Quat& q2) {
-  const Quat back = q1.conjugate();
-  return {back * (x2 - x1), back * q2};
-}
-
-/// Bound on how far any point within `reach` of body 2 has moved in the frame of body 1 since the search.
-double motion_since(const PairSearch& search, const Relative& now, double reach) {
-  const Quat turned = search.turn.conjugate() * now.turn;
-  return (now.offset - search.offset).norm() + 2.0 * reach * turned.vec().norm();
-}
 
 struct Found {
   PebblePair key;
@@ -44,11 +24,6 @@ struct Scratch {
   std::vector<double> columns;
   std::vector<PebblePair> keys;
   std::vector<ContactMemory> memory;
-  std::vector<WallCandidate> wall_candidates;
-  std::vector<int> facets;
-  std::vector<std::int32_t> wall_keys;
-  std::vector<WallMemory> wall_memory;
-  std::vector<std::pair<std::int32_t, int>> touched;
 };
 
 Scratch& scratch() {
@@ -151,78 +126,6 @@ void replace_candidates(Index pair, Scratch& s, PairBlock& block, PairGeometry& 
   for (Index later = pair + 1; later < block.pairs.size(); ++later) block.pairs[later].first += more;
 }
 
-/// Facets whose distance to the sphere is below its radius, in ascending order, behind those in `facets`.
-void append_near_facets(const WallShape& shape, const Vec3& centre, double radius, Scratch& s) {
-  s.stack.assign(1, {0, 0});
-  const Index first = s.facets.size();
-  while (!s.stack.empty()) {
-    const int k = s.stack.back().first;
-    s.stack.pop_back();
-    const SphereTree::Node& node = shape.tree.nodes[static_cast<Index>(k)];
-    const double near = node.bound.radius + radius;
-    if ((node.bound.centre - centre).squaredNorm() > near * near) continue;
-    if (!node.is_leaf()) {
-      s.stack.emplace_back(node.right, 0);
-      s.stack.emplace_back(k + 1, 0);
-      continue;
-    }
-    for (int f = node.first; f < node.first + node.count; ++f) {
-      const Vec3 q = closest_point(shape.facets[static_cast<Index>(f)], centre);
-      if ((q - centre).squaredNorm() <= radius * radius) s.facets.push_back(f);
-    }
-  }
-  std::sort(s.facets.begin() + static_cast<std::ptrdiff_t>(first), s.facets.end());
-}
-
-/// Pebbles of a clump with less than the skin to the wall. `wall` is the wall's pose in the clump's frame.
-void find_wall_candidates(const ClumpTemplate& shape, double scale, const WallShape& wall,
-                          const Relative& pose, double skin, Scratch& s) {
-  s.wall_candidates.clear();
-  s.wall_keys.clear();
-  s.facets.clear();
-  // Place of the clump in the wall's frame.
-  const Quat turn = pose.turn.conjugate();
-  const Vec3 offset = turn * -pose.offset;
-  s.touched.assign(1, {0, 0});
-  std::vector<std::int32_t>& pebbles = s.wall_keys;
-  while (!s.touched.empty()) {
-    const int k = s.touched.back().first;
-    s.touched.pop_back();
-    const SphereTree::Node& node = shape.tree.nodes[static_cast<Index>(k)];
-    const Vec3 centre = offset + turn * (scale * node.bound.centre);
-    const double radius = scale * node.bound.radius + skin;
-    if (wall.is_plane) {
-      if (centre.z() > radius) continue;
-    } else {
-      const SphereTree::Node& root = wall.tree.nodes[0];
-      const double near = root.bound.radius + radius;
-      if ((root.bound.centre - centre).squaredNorm() > near * near) continue;
-    }
-    if (!node.is_leaf()) {
-      s.touched.emplace_back(node.right, 0);
-      s.touched.emplace_back(k + 1, 0);
-      continue;
-    }
-    for (int p = node.first; p < node.first + node.count; ++p) {
-      const Pebble& pebble = shape.pebbles[static_cast<Index>(p)];
-      const Vec3 local = scale * pebble.centre;
-      const Vec3 x = offset + turn * local;
-      const double reach = scale * pebble.radius + skin;
-      const int first = static_cast<int>(s.facets.size());
-      if (wall.is_plane) {
-        if (x.z() > reach) continue;
-      } else {
-        append_near_facets(wall, x, reach, s);
-        if (static_cast<int>(s.facets.size()) == first) continue;
-      }
-      pebbles.push_back(p);
-      s.wall_candidates.push_back(
-          {local, scale * pebble.radius, first, static_cast<int>(s.facets.size()) - first});
-    }
-  }
-  // The walk visits leaves, and so pebbles, in ascending order: right children were pushed first.
-}
-
 }  // namespace
 
 void refresh(const Model& model, const State& state, const Workspace& work, PairBlock& block,
@@ -258,88 +161,6 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
     replace_candidates(k, scratch(), block, geometry);
     search = {now.offset, now.turn, work.skin, travel + work.skin};
   }
-}
-
-void refresh(const Model& model, const State& state, const Workspace& work, WallBlock& block,
-             WallGeometry& geometry) {
-  bool is_due = false;
-  for (Index k = 0; k < block.pairs.size() && !is_due; ++k)
-    is_due = work.travel[static_cast<Index>(block.pairs[k].clump)] +
-                 work.wall_travel[static_cast<Index>(block.pairs[k].wall)] >
-             geometry.search[k].due;
-  if (!is_due) return;
-
-  // One or more pairs must be looked at; if any needs a new list, the whole small block gets one.
-  bool must_search = false;
-  for (Index k = 0; k < block.pairs.size(); ++k) {
-    PairSearch& search = geometry.search[k];
-    const Index c = static_cast<Index>(block.pairs[k].clump), w = static_cast<Index>(block.pairs[k].wall);
-    const double travel = work.travel[c] + work.wall_travel[w];
-    if (travel <= search.due) continue;
-    const WallState& wall = state.walls[w];
-    const Relative now = relative_pose(state.clumps.position[c], state.clumps.orientation[c],
-                                       wall.pose.position, wall.pose.orientation);
-    // A wall may reach far: measure the clump's motion in the wall's frame instead.
-    const Relative seen{now.turn.conjugate() * -now.offset, now.turn.conjugate()};
-    const Relative then{search.turn.conjugate() * -search.offset, search.turn.conjugate()};
-    const PairSearch before{then.offset, then.turn, search.range, search.due};
-    const double left = search.range - motion_since(before, seen, work.bound[c]);
-    if (left > nearly_used_up * work.skin)
-      search.due = travel + left;
-    else
-      must_search = true;
-  }
-  if (!must_search) return;
-
-  Scratch& s = scratch();
-  std::vector<WallCandidate> candidates;
-  std::vector<int> facets;
-  std::vector<std::int32_t> keys;
-  std::vector<WallMemory> memory;
-  for (Index k = 0; k < block.pairs.size(); ++k) {
-    WallPair& p = block.pairs[k];
-    const Index c = static_cast<Index>(p.clump), w = static_cast<Index>(p.wall);
-    const WallState& wall = state.walls[w];
-    const Relative now = relative_pose(state.clumps.position[c], state.clumps.orientation[c],
-                                       wall.pose.position, wall.pose.orientation);
-    find_wall_candidates(model.templates[static_cast<Index>(state.clumps.shape[c])], state.clumps.scale[c],
-                         model.walls[w].shape, now, work.skin, s);
-    geometry.search[k] = {now.offset, now.turn, work.skin, work.travel[c] + work.wall_travel[w] + work.skin};
-
-    Index old = static_cast<Index>(p.first);
-    const Index old_end = old + static_cast<Index>(p.count);
-    p.first = static_cast<int>(keys.size());
-    // A pebble that touched in the last step stays, however far it is now: its contact has yet to be ended.
-    const auto keep_touching = [&] {
-      const WallMemory& kept = block.memory[old];
-      const auto touches = [](const ContactMemory& m) { return m.touches(); };
-      if (std::any_of(kept.points.begin(), kept.points.end(), touches)) {
-        const Index shape = static_cast<Index>(state.clumps.shape[c]);
-        const Pebble& pebble = model.templates[shape].pebbles[static_cast<Index>(block.keys[old])];
-        const double scale = state.clumps.scale[c];
-        memory.push_back(kept);
-        keys.push_back(block.keys[old]);
-        candidates.push_back({scale * pebble.centre, scale * pebble.radius, 0, 0});
-      }
-      ++old;
-    };
-    for (Index m = 0; m < s.wall_keys.size(); ++m) {
-      while (old < old_end && block.keys[old] < s.wall_keys[m]) keep_touching();
-      const bool is_known = old < old_end && block.keys[old] == s.wall_keys[m];
-      memory.push_back(is_known ? block.memory[old++] : WallMemory{});
-      keys.push_back(s.wall_keys[m]);
-      WallCandidate candidate = s.wall_candidates[m];
-      candidate.first_facet += static_cast<int>(facets.size());
-      candidates.push_back(candidate);
-    }
-    while (old < old_end) keep_touching();
-    p.count = static_cast<int>(keys.size()) - p.first;
-    facets.insert(facets.end(), s.facets.begin(), s.facets.end());
-  }
-  block.keys = std::move(keys);
-  block.memory = std::move(memory);
-  geometry.candidates = std::move(candidates);
-  geometry.facets = std::move(facets);
 }
 
 }  // namespace trackbed

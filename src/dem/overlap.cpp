@@ -50,43 +50,17 @@ bool stone_meets_wall(const Model& model, const State& state, int clump, int wal
   const ClumpTemplate& t = model.templates[static_cast<Index>(c.shape[i])];
   const WallShape& shape = model.walls[w].shape;
   const Pose stone{c.position[i], c.orientation[i]};
-  const auto distance_below = [&](const Vec3& body_point, double limit) {
-    const Vec3 p = state.walls[w].pose.to_body(stone.to_world(c.scale[i] * body_point));
-    if (shape.is_plane) return p.z() < limit;
-    std::vector<int> stack{0};
-    while (!stack.empty()) {
-      const int k = stack.back();
-      stack.pop_back();
-      const SphereTree::Node& node = shape.tree.nodes[static_cast<Index>(k)];
-      const double near = node.bound.radius + limit;
-      if ((node.bound.centre - p).squaredNorm() >= near * near) continue;
-      if (!node.is_leaf()) {
-        stack.push_back(node.right);
-        stack.push_back(k + 1);
-        continue;
-      }
-      for (int f = node.first; f < node.first + node.count; ++f)
-        if ((closest_point(shape.facets[static_cast<Index>(f)], p) - p).squaredNorm() < limit * limit) return true;
-    }
-    return false;
+  const auto meets = [&](const Vec3& centre, double radius) {
+    const Vec3 p = state.walls[w].pose.to_body(stone.to_world(c.scale[i] * centre));
+    const double reach = c.scale[i] * radius + clearance;
+    if (shape.is_plane) return p.z() < reach;
+    return any_near_facet(shape, p, reach, [](int) { return true; });
   };
-  std::vector<int> stack{0};
-  while (!stack.empty()) {
-    const int k = stack.back();
-    stack.pop_back();
-    const SphereTree::Node& node = t.tree.nodes[static_cast<Index>(k)];
-    if (!distance_below(node.bound.centre, c.scale[i] * node.bound.radius + clearance)) continue;
-    if (!node.is_leaf()) {
-      stack.push_back(node.right);
-      stack.push_back(k + 1);
-      continue;
-    }
-    for (int p = node.first; p < node.first + node.count; ++p) {
-      const Pebble& pebble = t.pebbles[static_cast<Index>(p)];
-      if (distance_below(pebble.centre, c.scale[i] * pebble.radius + clearance)) return true;
-    }
-  }
-  return false;
+  return t.tree.any([&](const Sphere& bound) { return meets(bound.centre, bound.radius); },
+                    [&](int p) {
+                      const Pebble& pebble = t.pebbles[static_cast<Index>(p)];
+                      return meets(pebble.centre, pebble.radius);
+                    });
 }
 
 bool is_inside(const WallShape& shape, const Vec3& point) {

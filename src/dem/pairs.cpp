@@ -92,25 +92,7 @@ std::vector<std::pair<int, int>> near_clumps(const Clumps& clumps, const Workspa
 
 bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
   if (shape.is_plane) return centre.z() < radius;
-  std::array<int, 64> stack;
-  int top = 0;
-  stack[static_cast<Index>(top++)] = 0;
-  while (top > 0) {
-    const int k = stack[static_cast<Index>(--top)];
-    const SphereTree::Node& node = shape.tree.nodes[static_cast<Index>(k)];
-    const double near = node.bound.radius + radius;
-    if ((node.bound.centre - centre).squaredNorm() >= near * near) continue;
-    if (!node.is_leaf()) {
-      stack[static_cast<Index>(top++)] = node.right;
-      stack[static_cast<Index>(top++)] = k + 1;
-      continue;
-    }
-    for (int f = node.first; f < node.first + node.count; ++f) {
-      const Facet& facet = shape.facets[static_cast<Index>(f)];
-      if ((closest_point(facet, centre) - centre).squaredNorm() < radius * radius) return true;
-    }
-  }
-  return false;
+  return any_near_facet(shape, centre, radius, [](int) { return true; });
 }
 
 /// All (wall, clump) with less than the margin between the wall and the bounding sphere, ascending.

@@ -51,7 +51,25 @@ using WallPoints = std::array<WallPoint, max_wall_points>;
 int touching_points(const WallShape& shape, const int* near, int n_near, const Vec3& centre, double radius,
                     WallPoints& points);
 
+/// Visits, ascending, the facets of a mesh nearer to `centre` than `radius`, until visit(facet) returns true. Returns
+/// whether it did.
+template <class Visit>
+bool any_near_facet(const WallShape& shape, const Vec3& centre, double radius, Visit&& visit);
+
 /// Closest point of a triangle (Ericson, Real-Time Collision Detection, 5.1.5).
 Vec3 closest_point(const Facet& facet, const Vec3& p);
+
+template <class Visit>
+bool any_near_facet(const WallShape& shape, const Vec3& centre, double radius, Visit&& visit) {
+  return shape.tree.any(
+      [&](const Sphere& bound) {
+        const double near = bound.radius + radius;
+        return (bound.centre - centre).squaredNorm() <= near * near;
+      },
+      [&](int f) {
+        const Vec3 q = closest_point(shape.facets[static_cast<std::size_t>(f)], centre);
+        return (q - centre).squaredNorm() <= radius * radius && visit(f);
+      });
+}
 
 }  // namespace trackbed

@@ -88,7 +88,7 @@ TEST(same, stones_in_another_order_move_alike) {
   std::reverse(c.orientation.begin(), c.orientation.end());
   std::reverse(c.scale.begin(), c.scale.end());
   std::reverse(c.mass.begin(), c.mass.end());
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 1300; ++k) {
     a.step();
     b.step();
   }

@@ -1,0 +1,135 @@
+// Level two of the search for a stone and a wall: the stone's tree is walked against the wall's.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dem/pair_motion.h"
+#include "dem/search.h"
+
+namespace trackbed {
+namespace {
+
+using Index = std::size_t;
+
+/// The stone in the wall's frame: a wall may reach far, so that its own turning would be too large a bound.
+Relative stone_seen_from_wall(const State& state, const WallPair& p) {
+  const Index c = static_cast<Index>(p.clump);
+  const Pose& wall = state.walls[static_cast<Index>(p.wall)].pose;
+  return relative_pose(wall.position, wall.orientation, state.clumps.position[c], state.clumps.orientation[c]);
+}
+
+double travel_of(const Workspace& work, const WallPair& p) {
+  return work.travel[static_cast<Index>(p.clump)] + work.wall_travel[static_cast<Index>(p.wall)];
+}
+
+/// Measures the motion of the pairs that are due; whether one of them needs a new list.
+bool must_search(const State& state, const Workspace& work, const WallBlock& block, WallGeometry& geometry) {
+  bool must = false;
+  for (Index k = 0; k < block.pairs.size(); ++k) {
+    PairSearch& search = geometry.search[k];
+    const WallPair& p = block.pairs[k];
+    const double travel = travel_of(work, p);
+    if (travel <= search.due) continue;
+    const double left =
+        search.range - motion_since(search, stone_seen_from_wall(state, p), work.bound[static_cast<Index>(p.clump)]);
+    if (left > nearly_used_up * work.skin)
+      search.due = travel + left;
+    else
+      must = true;
+  }
+  return must;
+}
+
+/// New lists of a block while it is searched.
+struct Lists {
+  std::vector<std::int32_t> keys;
+  std::vector<WallMemory> memory;
+  std::vector<WallCandidate> candidates;
+  std::vector<int> facets;
+
+  void clear() {
+    keys.clear();
+    memory.clear();
+    candidates.clear();
+    facets.clear();
+  }
+};
+
+bool touches(const WallMemory& memory) {
+  return std::any_of(memory.points.begin(), memory.points.end(), [](const ContactMemory& m) { return m.touches(); });
+}
+
+/// Lists the pebbles of one clump with less than the skin to the wall, ascending. Those that touched in the last
+/// step stay with their memory, however far they are now: their contacts have yet to be ended.
+void append_candidates(const Model& model, const State& state, double skin, const WallBlock& block,
+                       const WallPair& p, Lists& lists) {
+  const Index c = static_cast<Index>(p.clump);
+  const ClumpTemplate& stone = model.templates[static_cast<Index>(state.clumps.shape[c])];
+  const WallShape& wall = model.walls[static_cast<Index>(p.wall)].shape;
+  const double scale = state.clumps.scale[c];
+  const Relative seen = stone_seen_from_wall(state, p);
+  const auto place = [&](const Vec3& point) -> Vec3 { return seen.offset + seen.turn * (scale * point); };
+  Index old = static_cast<Index>(p.first);
+  const Index old_end = old + static_cast<Index>(p.count);
+
+  const auto append = [&](std::int32_t pebble, const WallMemory& memory, int first_facet) {
+    const Pebble& shape = stone.pebbles[static_cast<Index>(pebble)];
+    lists.keys.push_back(pebble);
+    lists.memory.push_back(memory);
+    lists.candidates.push_back({scale * shape.centre, scale * shape.radius, first_facet,
+                                static_cast<int>(lists.facets.size()) - first_facet});
+  };
+  const auto keep_touching_before = [&](std::int32_t pebble) {
+    for (; old < old_end && block.keys[old] < pebble; ++old)
+      if (touches(block.memory[old])) append(block.keys[old], block.memory[old], static_cast<int>(lists.facets.size()));
+  };
+  const auto is_near = [&](const Sphere& bound) {
+    const Vec3 centre = place(bound.centre);
+    const double radius = scale * bound.radius + skin;
+    if (wall.is_plane) return centre.z() <= radius;
+    const Sphere& all = wall.tree.nodes[0].bound;
+    return (all.centre - centre).squaredNorm() <= (all.radius + radius) * (all.radius + radius);
+  };
+  stone.tree.any(is_near, [&](int pebble) {
+    const Pebble& shape = stone.pebbles[static_cast<Index>(pebble)];
+    const Vec3 centre = place(shape.centre);
+    const double radius = scale * shape.radius + skin;
+    if (wall.is_plane && centre.z() > radius) return false;
+    keep_touching_before(pebble);
+    const Index first = lists.facets.size();
+    any_near_facet(wall, centre, radius, [&](int f) {
+      lists.facets.push_back(f);
+      return false;
+    });
+    if (!wall.is_plane && lists.facets.size() == first) return false;
+    const bool is_known = old < old_end && block.keys[old] == pebble;
+    append(pebble, is_known ? block.memory[old++] : WallMemory{}, static_cast<int>(first));
+    return false;
+  });
+  keep_touching_before(static_cast<std::int32_t>(stone.pebbles.size()));
+}
+
+}  // namespace
+
+void refresh(const Model& model, const State& state, const Workspace& work, WallBlock& block,
+             WallGeometry& geometry) {
+  // If one pair needs a new list, the whole small block gets one.
+  if (!must_search(state, work, block, geometry)) return;
+  thread_local Lists lists;
+  lists.clear();
+  for (Index k = 0; k < block.pairs.size(); ++k) {
+    WallPair& p = block.pairs[k];
+    const int first = static_cast<int>(lists.keys.size());
+    append_candidates(model, state, work.skin, block, p, lists);
+    p.first = first;
+    p.count = static_cast<int>(lists.keys.size()) - first;
+    const Relative seen = stone_seen_from_wall(state, p);
+    geometry.search[k] = {seen.offset, seen.turn, work.skin, travel_of(work, p) + work.skin};
+  }
+  block.keys = lists.keys;
+  block.memory = lists.memory;
+  geometry.candidates = lists.candidates;
+  geometry.facets = lists.facets;
+}
+
+}  // namespace trackbed
