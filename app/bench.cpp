@@ -15,10 +15,10 @@ namespace {
 
 struct BenchOptions {
   std::filesystem::path bed;
-  double side = 0.6;    // [m]
-  double dt = 8e-6;     // [s]
+  double side = 0.6;  // [m]
+  double dt = 8e-6;   // [s]
   int threads = 1, blocks = 7, steps = 0, warm = 300;
-  double skin = 0;      // [m]
+  double skin = 0;  // [m]
 };
 
 double seconds_of(Simulation& sim, int steps) {
@@ -31,7 +31,8 @@ double seconds_of(Simulation& sim, int steps) {
 
 int bench_command(int argc, char** argv) {
   BenchOptions o;
-  CLI::App app("Times steps on a settled bed: linear law, friction 0.5, local damping 0.7.", "trackbed bench");
+  CLI::App app("Times steps on a settled bed: linear law, friction 0.5, local damping 0.7.",
+               "trackbed bench");
   app.add_option("--bed", o.bed, "lines x y z r [clump], SI")->required()->check(CLI::ExistingFile);
   app.add_option("--side", o.side, "of the square floor [m]")->check(CLI::PositiveNumber);
   app.add_option("--dt", o.dt, "time step [s]")->check(CLI::PositiveNumber);
@@ -61,11 +62,12 @@ int bench_command(int argc, char** argv) {
   std::size_t candidates = 0;
   for (const PairBlock& block : sim.state.pair_blocks) candidates += block.keys.size();
   for (const WallBlock& block : sim.state.wall_blocks) candidates += block.keys.size();
-  fmt::print("{} stones, {} threads: {:.1f} steps/s ({:.1f} - {:.1f}), {} contacts, {} candidates, "
-             "search {:.0f} %, forces {:.0f} %, gather {:.0f} %, motion {:.0f} %, hash {:016x}\n",
-             sim.state.clumps.size(), o.threads, rates[rates.size() / 2], rates.front(), rates.back(),
-             sim.work.touching, candidates, 100 * search / all, 100 * forces / all, 100 * gather / all,
-             100 * motion / all, hash(sim.state));
+  fmt::print(
+      "{} stones, {} threads: {:.1f} steps/s ({:.1f} - {:.1f}), {} contacts, {} candidates, "
+      "search {:.0f} %, forces {:.0f} %, gather {:.0f} %, motion {:.0f} %, hash {:016x}\n",
+      sim.state.clumps.size(), o.threads, rates[rates.size() / 2], rates.front(), rates.back(),
+      sim.work.touching, candidates, 100 * search / all, 100 * forces / all, 100 * gather / all,
+      100 * motion / all, hash(sim.state));
   return 0;
 }
 

@@ -39,8 +39,8 @@ int dispatch(int argc, char** argv) {
   return asked ? 0 : 2;
 }
 
-/// Threads wait for each other several times a step. On a machine shared with other work, long spinning keeps the
-/// cores from whoever has work; the OpenMP library reads how long to spin once, when it is loaded.
+/// Threads wait for each other several times a step. On a machine shared with other work, long spinning keeps
+/// the cores from whoever has work; the OpenMP library reads how long to spin once, when it is loaded.
 void wait_politely(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   ::setenv("GOMP_SPINCOUNT", "20000", 1);

@@ -14,9 +14,15 @@ namespace {
 
 /// What most people look for first; those of walls and the rest are in summary.json.
 void print_results(const Summary& summary) {
-  constexpr std::array names{
-      "stones",   "contacts",   "coordination_number", "contact_force_mean", "contact_force_max",
-      "porosity", "bed_height", "unbalanced_ratio"};
+  constexpr std::array names{"stones",
+                             "contacts",
+                             "coordination_number",
+                             "contact_force_mean",
+                             "contact_force_max",
+                             "porosity",
+                             "porosity_of_pebbles",
+                             "bed_height",
+                             "unbalanced_ratio"};
   std::vector<Result> shown;
   for (const Result& r : summary.measures) {
     const auto dot = r.name.find('.');

@@ -13,7 +13,7 @@ namespace trackbed {
 class Hash {
  public:
   template <class T>
-  void add(const T& value) requires std::is_trivially_copyable_v<T> && (sizeof(T) <= 8) {
+  void add(const T& value) requires std::is_trivially_copyable_v<T> &&(sizeof(T) <= 8) {
     std::uint64_t word = 0;
     std::memcpy(&word, &value, sizeof(T));
     mix(word);

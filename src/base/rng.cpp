@@ -24,14 +24,18 @@ double Rng::uniform() {
   return (static_cast<double>(high) * 67108864.0 + static_cast<double>(low)) / 9007199254740992.0;
 }
 
-double Rng::uniform(double low, double high) { return low + (high - low) * uniform(); }
+double Rng::uniform(double low, double high) {
+  return low + (high - low) * uniform();
+}
 
 double Rng::normal() {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
   return radius * std::cos(2.0 * std::numbers::pi * uniform());
 }
 
-std::uint32_t Rng::index(std::uint32_t n) { return engine_(n); }
+std::uint32_t Rng::index(std::uint32_t n) {
+  return engine_(n);
+}
 
 Quat Rng::rotation() {
   const double u = uniform();

@@ -1,5 +1,5 @@
-// One touching contact: its motion, its memory, its force. Bodies are numbered 1 and 2; the normal points from
-// 1 to 2; force and moment are those that body 2 receives; pressing is positive.
+// One touching contact: its motion, its memory, its force. Bodies are numbered 1 and 2; the normal points
+// from 1 to 2; force and moment are those that body 2 receives; pressing is positive.
 #pragma once
 
 #include "base/vec.h"
@@ -18,14 +18,14 @@ struct ContactMemory {
 
 /// Geometry and motion of a touching contact during one step.
 struct ContactKinematics {
-  double overlap;        // [m], > 0
-  Vec3 normal;           // unit vector from 1 to 2
-  Vec3 velocity;         // of body 2 relative to body 1 at the contact point [m/s]
-  Vec3 spin;             // of body 2 relative to body 1 [rad/s]
-  double mean_twist;     // mean spin of the two bodies about the normal [rad/s]
-  double radius;         // effective: 1/(1/R1 + 1/R2) [m]
-  double reduced_mass;   // m1 m2/(m1 + m2); of the one body against a wall [kg]
-  double dt;             // [s]
+  double overlap;       // [m], > 0
+  Vec3 normal;          // unit vector from 1 to 2
+  Vec3 velocity;        // of body 2 relative to body 1 at the contact point [m/s]
+  Vec3 spin;            // of body 2 relative to body 1 [rad/s]
+  double mean_twist;    // mean spin of the two bodies about the normal [rad/s]
+  double radius;        // effective: 1/(1/R1 + 1/R2) [m]
+  double reduced_mass;  // m1 m2/(m1 + m2); of the one body against a wall [kg]
+  double dt;            // [s]
 };
 
 /// Energy a contact turned into heat during one step [J].
@@ -47,8 +47,8 @@ struct ContactForce {
   Vec3 moment;  // on body 2 at the contact point [N m]
 };
 
-/// Rotates a stored tangential vector by the smallest rotation that carries the old normal to the new one, then
-/// by `twist` radians about the new one. Keeps its length.
+/// Rotates a stored tangential vector by the smallest rotation that carries the old normal to the new one,
+/// then by `twist` radians about the new one. Keeps its length.
 inline Vec3 carry_along(const Vec3& stored, const Vec3& old_normal, const Vec3& normal, double twist) {
   const Vec3 axis = old_normal.cross(normal);  // length sin of the angle
   const double cosine = old_normal.dot(normal);

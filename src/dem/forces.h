@@ -7,9 +7,9 @@
 
 namespace trackbed {
 
-/// Refreshes the candidates that are due and lets every touching contact respond, for a step of length dt [s].
-/// One clump pair is summed by one thread, each clump sums its pairs in ascending order of the other: the same
-/// bits for any number of threads.
+/// Refreshes the candidates that are due and lets every touching contact respond, for a step of length dt
+/// [s]. One clump pair is summed by one thread, each clump sums its pairs in ascending order of the other:
+/// the same bits for any number of threads.
 void contact_forces(const Model& model, State& state, Workspace& work, double dt);
 
 /// Sums the pairs' results on the stones and walls.

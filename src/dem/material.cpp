@@ -5,7 +5,9 @@
 namespace trackbed {
 namespace {
 
-double in_series(double a, double b) { return a > 0 && b > 0 ? a * b / (a + b) : 0.0; }
+double in_series(double a, double b) {
+  return a > 0 && b > 0 ? a * b / (a + b) : 0.0;
+}
 
 ContactProperties combine(const Material& a, const Material& b, LawKind law, Inheritance inheritance) {
   ContactProperties p;

@@ -15,10 +15,10 @@ namespace trackbed {
 
 /// A wall that has mass: it moves under the stones' forces, gravity and an applied force.
 struct BodyProperties {
-  double mass = 0;                                    // [kg]
-  Vec3 inertia = Vec3::Zero();                        // about the axes of the wall frame, which are principal [kg m^2]
-  std::array<bool, 3> free_shift{true, true, true};   // world axes in which it may move
-  std::array<bool, 3> free_turn{true, true, true};    // world axes about which it may turn
+  double mass = 0;              // [kg]
+  Vec3 inertia = Vec3::Zero();  // about the axes of the wall frame, which are principal [kg m^2]
+  std::array<bool, 3> free_shift{true, true, true};  // world axes in which it may move
+  std::array<bool, 3> free_turn{true, true, true};   // world axes about which it may turn
 };
 
 /// A wall, fixed or moved, or a body such as the sleeper.
@@ -30,18 +30,18 @@ struct Wall {
 
 /// How the time step is chosen; docs/numerics.md.
 struct TimeStepRule {
-  double safety = 0.8;            // of sqrt(m/K) for the worst degree of freedom
-  double largest_growth = 1.05;   // per step
-  double largest_travel = 0.02;   // of the smallest pebble's radius, per step: no contact is jumped into
-  std::optional<double> fixed;    // user's choice [s]; refused when above the stable one
-  int interval = 20;              // steps between two looks
+  double safety = 0.8;           // of sqrt(m/K) for the worst degree of freedom
+  double largest_growth = 1.05;  // per step
+  double largest_travel = 0.02;  // of the smallest pebble's radius, per step: no contact is jumped into
+  std::optional<double> fixed;   // user's choice [s]; refused when above the stable one
+  int interval = 20;             // steps between two looks
 };
 
 /// When a run is stopped because its result would be wrong.
 struct Limits {
-  double overlap = 0.25;          // of the smaller stone's equal-volume radius
-  double speed = 100;             // of any stone [m/s]
-  Eigen::AlignedBox3d domain;     // no stone's centre leaves it; empty: anywhere
+  double overlap = 0.25;       // of the smaller stone's equal-volume radius
+  double speed = 100;          // of any stone [m/s]
+  Eigen::AlignedBox3d domain;  // no stone's centre leaves it; empty: anywhere
 };
 
 /// Speed settings of the contact search; they change no result.

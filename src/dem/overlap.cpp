@@ -69,7 +69,8 @@ bool is_inside(const WallShape& shape, const Vec3& point) {
   for (const Facet& f : shape.facets) {
     const Vec3 a = f.a - point, b = f.b - point, c = f.c - point;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    angle +=
+        2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
   }
   return angle > 2.0 * std::numbers::pi;
 }

@@ -6,7 +6,8 @@
 
 namespace trackbed {
 
-/// A pair is looked through again when less than this share of its skin is left, rather than measured each step.
+/// A pair is looked through again when less than this share of its skin is left, rather than measured each
+/// step.
 inline constexpr double nearly_used_up = 0.25;
 
 /// Pose of one body in the frame of another.

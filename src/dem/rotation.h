@@ -12,8 +12,8 @@ inline Vec3 spin_of(const Mat3& rotation, const Vec3& inertia, const Vec3& angul
   return rotation * (rotation.transpose() * angular_momentum).cwiseQuotient(inertia);
 }
 
-/// Turns a body by the angle 2 atan(t) about its own principal axis `axis` (0, 1, 2); `momentum` is the angular
-/// momentum seen from the body, which turns the other way. The quaternion grows by sqrt(1 + t^2).
+/// Turns a body by the angle 2 atan(t) about its own principal axis `axis` (0, 1, 2); `momentum` is the
+/// angular momentum seen from the body, which turns the other way. The quaternion grows by sqrt(1 + t^2).
 inline void turn_about_axis(Quat& q, Vec3& momentum, int axis, double t) {
   const int j = (axis + 1) % 3, k = (axis + 2) % 3;
   const double c = (1.0 - t * t) / (1.0 + t * t), s = 2.0 * t / (1.0 + t * t);
@@ -25,11 +25,11 @@ inline void turn_about_axis(Quat& q, Vec3& momentum, int axis, double t) {
   q = q * Quat(1.0, half.x(), half.y(), half.z());
 }
 
-/// Moves the orientation through a free rotation of length dt [s] with constant angular momentum (world axes):
-/// turns about the principal axes 1, 2, 3, 2, 1 in sequence, each the exact motion of its part of the kinetic
-/// energy (Dullweber, Leimkuhler & McLachlan 1997), but for the tangent of the half angle, which is taken as half the
-/// angle: the map stays symplectic, and no sine is needed. The angular momentum is kept to rounding, the energy
-/// without drift.
+/// Moves the orientation through a free rotation of length dt [s] with constant angular momentum (world
+/// axes): turns about the principal axes 1, 2, 3, 2, 1 in sequence, each the exact motion of its part of the
+/// kinetic energy (Dullweber, Leimkuhler & McLachlan 1997), but for the tangent of the half angle, which is
+/// taken as half the angle: the map stays symplectic, and no sine is needed. The angular momentum is kept to
+/// rounding, the energy without drift.
 inline void rotate_freely(Quat& q, const Vec3& angular_momentum, const Vec3& inertia, double dt) {
   if (inertia[0] == inertia[1] && inertia[1] == inertia[2]) {
     const Vec3 half = (0.5 * dt / inertia[0]) * angular_momentum;

@@ -1,7 +1,7 @@
-// Two-level contact search. Level one pairs stones that lie near each other (a grid over bounding spheres) and
-// stones with walls (the wall's facet tree). Level two walks the two trees of a pair and lists its candidates:
-// pebbles nearer than the skin. A pair's list is made anew only when the motion of its own two bodies has used
-// up the skin; so no list is ever too old, and neither skin nor margin changes any result.
+// Two-level contact search. Level one pairs stones that lie near each other (a grid over bounding spheres)
+// and stones with walls (the wall's facet tree). Level two walks the two trees of a pair and lists its
+// candidates: pebbles nearer than the skin. A pair's list is made anew only when the motion of its own two
+// bodies has used up the skin; so no list is ever too old, and neither skin nor margin changes any result.
 #pragma once
 
 #include "dem/model.h"

@@ -24,8 +24,8 @@ double stiffness_along(const Model& model, const State& state, const Workspace& 
   return k;
 }
 
-double servo_speed(const Model& model, const State& state, const Workspace& work, int wall, const Vec3& direction,
-                   double target) {
+double servo_speed(const Model& model, const State& state, const Workspace& work, int wall,
+                   const Vec3& direction, double target) {
   constexpr double gain = 0.8, share_of_impact = 0.05;
   const Clumps& c = state.clumps;
   const double heaviest = c.mass.empty() ? 1.0 : *std::max_element(c.mass.begin(), c.mass.end());

@@ -117,8 +117,8 @@ std::uint64_t hash(const State& state) {
     h.add(c.material[i]);
     h.add(c.scale[i]);
     h.add(c.mass[i]);
-    for (const Vec3* v : {&c.inertia[i], &c.position[i], &c.velocity[i], &c.angular_momentum[i], &c.force[i],
-                          &c.moment[i]})
+    for (const Vec3* v :
+         {&c.inertia[i], &c.position[i], &c.velocity[i], &c.angular_momentum[i], &c.force[i], &c.moment[i]})
       add(h, *v);
     add(h, c.orientation[i].coeffs());
     for (double loss : {c.losses[i].friction, c.losses[i].rolling, c.losses[i].dashpot, c.losses[i].damping})

@@ -20,8 +20,8 @@ struct StoneLosses : Losses {
 
 /// The stones, one entry a clump in each array.
 struct Clumps {
-  std::vector<int> id;                 // stays with the stone
-  std::vector<int> shape;              // index into Model::templates
+  std::vector<int> id;     // stays with the stone
+  std::vector<int> shape;  // index into Model::templates
   std::vector<int> material;
   std::vector<double> scale;           // on the template's lengths
   std::vector<double> mass;            // [kg]
@@ -40,7 +40,7 @@ struct Clumps {
 
 /// Motion and reaction of a wall or body; for a body the frame's origin is its centre of mass.
 struct WallState {
-  bool present = true;                   // false: a body that no stage has placed yet
+  bool present = true;  // false: a body that no stage has placed yet
   Pose pose;
   Vec3 velocity = Vec3::Zero();          // [m/s]
   Vec3 angular_velocity = Vec3::Zero();  // about the frame's origin [rad/s]
@@ -65,8 +65,8 @@ struct ClumpPair {
   int first, count;
 };
 
-/// Consecutive clump pairs that one thread works on at a time. Candidates out of touch have an untouched memory
-/// and mean nothing: which they are depends on when a search ran.
+/// Consecutive clump pairs that one thread works on at a time. Candidates out of touch have an untouched
+/// memory and mean nothing: which they are depends on when a search ran.
 struct PairBlock {
   static constexpr int capacity = 16;
   std::vector<ClumpPair> pairs;

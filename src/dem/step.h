@@ -7,8 +7,8 @@
 
 namespace trackbed {
 
-/// Makes forces, contacts and the planned step belong to the present positions; to be called before the first step
-/// and after anything but step() changed the state (stones added, moved, removed; walls placed).
+/// Makes forces, contacts and the planned step belong to the present positions; to be called before the first
+/// step and after anything but step() changed the state (stones added, moved, removed; walls placed).
 void settle_contacts(const Model& model, State& state, Workspace& work);
 
 /// Carries the state from t to t + dt. Throws RunError when the state is no longer sound (see inspect.h).

@@ -14,7 +14,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Adds a contact's share: k_n along the normal, k_s across it, the rolling spring across it, and its dashpots.
+/// Adds a contact's share: k_n along the normal, k_s across it, the rolling spring across it, and its
+/// dashpots.
 void add_contact(const Touching& t, const Vec3& lever, const Mat3& axes, DiagonalStiffness& k) {
   const ContactProperties& p = *t.properties;
   const double kr = p.law == LawKind::linear_rolling ? LinearRolling::rolling_stiffness(p, t.radius) : 0.0;
@@ -48,8 +49,8 @@ double shortest(const DiagonalStiffness& k, double mass, const Vec3& inertia) {
   return limit;
 }
 
-/// A body that touches nothing may touch anything within the step: as if the stiffest contact were made at its
-/// farthest point, whose rolling spring is no stiffer than its shear spring there.
+/// A body that touches nothing may touch anything within the step: as if the stiffest contact were made at
+/// its farthest point, whose rolling spring is no stiffer than its shear spring there.
 void floor_stiffness(const PairTable& pairs, int material, double reach, double mass, DiagonalStiffness& k) {
   const double stiffest = pairs.stiffest(material);
   bool rolls = false;
@@ -120,9 +121,8 @@ DiagonalStiffness stiffness_of(const Model& model, const State& state, const Wor
     const int entry = work.entries[static_cast<Index>(e)], pair = entry / 2;
     const PairBlock& block = state.pair_blocks[static_cast<Index>(pair / PairBlock::capacity)];
     const ClumpPair& p = block.pairs[static_cast<Index>(pair % PairBlock::capacity)];
-    visit_pair(model, state, block, p, [&](const Touching& t) {
-      add_contact(t, entry % 2 ? t.lever_2 : t.lever_1, axes, k);
-    });
+    visit_pair(model, state, block, p,
+               [&](const Touching& t) { add_contact(t, entry % 2 ? t.lever_2 : t.lever_1, axes, k); });
   }
   for (int e = work.first_wall_entry[c]; e < work.first_wall_entry[c + 1]; ++e) {
     const int pair = work.wall_entries[static_cast<Index>(e)];
@@ -173,8 +173,9 @@ double next_step(const Model& model, const State& state, const Workspace& work) 
       const std::string who =
           stable.clump < 0 ? std::string("a body")
                            : fmt::format("stone {}", state.clumps.id[static_cast<Index>(stable.clump)]);
-      throw RunError(fmt::format("the chosen time step {:.3g} s is above the stable one, {:.3g} s, that {} allows by its {}",
-                                 *rule.fixed, stable.dt, who, stable.is_kinematic ? "speed" : "stiffness"));
+      throw RunError(fmt::format(
+          "the chosen time step {:.3g} s is above the stable one, {:.3g} s, that {} allows by its {}",
+          *rule.fixed, stable.dt, who, stable.is_kinematic ? "speed" : "stiffness"));
     }
     return *rule.fixed;
   }

@@ -10,8 +10,8 @@
 
 namespace trackbed {
 
-/// Diagonal stiffness of one body: translation in world axes [N/m], rotation about its principal axes [N m/rad];
-/// and the same of its dashpots [N s/m], [N m s/rad].
+/// Diagonal stiffness of one body: translation in world axes [N/m], rotation about its principal axes [N
+/// m/rad]; and the same of its dashpots [N s/m], [N m s/rad].
 struct DiagonalStiffness {
   Vec3 shift = Vec3::Zero();
   Vec3 turn = Vec3::Zero();
@@ -32,12 +32,12 @@ struct StableStep {
   bool is_kinematic;  // by its motion rather than its stiffness
 };
 
-/// safety x sqrt(m/K) over all degrees of freedom, each stone with at least one contact of the stiffest kind it can
-/// make at its farthest point; and the kinematic limit of the fastest.
+/// safety x sqrt(m/K) over all degrees of freedom, each stone with at least one contact of the stiffest kind
+/// it can make at its farthest point; and the kinematic limit of the fastest.
 StableStep stable_step(const Model& model, const State& state, const Workspace& work);
 
-/// The step to take next, by the rule: stable, not grown too fast, or the user's. Throws RunError when the user's is
-/// above the stable one.
+/// The step to take next, by the rule: stable, not grown too fast, or the user's. Throws RunError when the
+/// user's is above the stable one.
 double next_step(const Model& model, const State& state, const Workspace& work);
 
 }  // namespace trackbed

@@ -1,4 +1,5 @@
-// Walks over the contacts that touch, for everything that is not done at every step: time step, measures, output.
+// Walks over the contacts that touch, for everything that is not done at every step: time step, measures,
+// output.
 #pragma once
 
 #include <vector>
@@ -11,16 +12,16 @@ namespace trackbed {
 
 /// One touching contact, as it stands after a step. Body 1 is always a stone.
 struct Touching {
-  int clump_1;                          // index of the stone
-  int clump_2;                          // index of the other stone, or -1
-  int wall;                             // index of the wall, or -1
-  int pebble_1;                         // place in the template
-  Vec3 normal;                          // from 1 to 2
-  double overlap;                       // [m]
-  Vec3 point;                           // middle of the overlap [m]
-  Vec3 lever_1, lever_2;                // from the centre of mass, or the wall's origin, to the point [m]
-  double radius;                        // effective [m]
-  double reduced_mass;                  // m1 m2/(m1 + m2); the stone's against a wall without mass [kg]
+  int clump_1;            // index of the stone
+  int clump_2;            // index of the other stone, or -1
+  int wall;               // index of the wall, or -1
+  int pebble_1;           // place in the template
+  Vec3 normal;            // from 1 to 2
+  double overlap;         // [m]
+  Vec3 point;             // middle of the overlap [m]
+  Vec3 lever_1, lever_2;  // from the centre of mass, or the wall's origin, to the point [m]
+  double radius;          // effective [m]
+  double reduced_mass;    // m1 m2/(m1 + m2); the stone's against a wall without mass [kg]
   const ContactProperties* properties;
   const ContactMemory* memory;
 

@@ -15,7 +15,8 @@ using Index = std::size_t;
 Relative stone_seen_from_wall(const State& state, const WallPair& p) {
   const Index c = static_cast<Index>(p.clump);
   const Pose& wall = state.walls[static_cast<Index>(p.wall)].pose;
-  return relative_pose(wall.position, wall.orientation, state.clumps.position[c], state.clumps.orientation[c]);
+  return relative_pose(wall.position, wall.orientation, state.clumps.position[c],
+                       state.clumps.orientation[c]);
 }
 
 double travel_of(const Workspace& work, const WallPair& p) {
@@ -30,8 +31,8 @@ bool must_search(const State& state, const Workspace& work, const WallBlock& blo
     const WallPair& p = block.pairs[k];
     const double travel = travel_of(work, p);
     if (travel <= search.due) continue;
-    const double left =
-        search.range - motion_since(search, stone_seen_from_wall(state, p), work.bound[static_cast<Index>(p.clump)]);
+    const double left = search.range - motion_since(search, stone_seen_from_wall(state, p),
+                                                    work.bound[static_cast<Index>(p.clump)]);
     if (left > nearly_used_up * work.skin)
       search.due = travel + left;
     else
@@ -56,11 +57,12 @@ struct Lists {
 };
 
 bool touches(const WallMemory& memory) {
-  return std::any_of(memory.points.begin(), memory.points.end(), [](const ContactMemory& m) { return m.touches(); });
+  return std::any_of(memory.points.begin(), memory.points.end(),
+                     [](const ContactMemory& m) { return m.touches(); });
 }
 
-/// Lists the pebbles of one clump with less than the skin to the wall, ascending. Those that touched in the last
-/// step stay with their memory, however far they are now: their contacts have yet to be ended.
+/// Lists the pebbles of one clump with less than the skin to the wall, ascending. Those that touched in the
+/// last step stay with their memory, however far they are now: their contacts have yet to be ended.
 void append_candidates(const Model& model, const State& state, double skin, const WallBlock& block,
                        const WallPair& p, Lists& lists) {
   const Index c = static_cast<Index>(p.clump);
@@ -81,7 +83,8 @@ void append_candidates(const Model& model, const State& state, double skin, cons
   };
   const auto keep_touching_before = [&](std::int32_t pebble) {
     for (; old < old_end && block.keys[old] < pebble; ++old)
-      if (touches(block.memory[old])) append(block.keys[old], block.memory[old], static_cast<int>(lists.facets.size()));
+      if (touches(block.memory[old]))
+        append(block.keys[old], block.memory[old], static_cast<int>(lists.facets.size()));
   };
   const auto is_near = [&](const Sphere& bound) {
     const Vec3 centre = place(bound.centre);

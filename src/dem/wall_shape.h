@@ -23,8 +23,8 @@ struct WallShape {
   bool is_plane = false;
   std::vector<Facet> facets;  // in the order of the tree's leaves
   SphereTree tree;
-  double reach = 0;           // largest distance of a vertex from the origin of the wall frame [m]
-  TriangleMesh mesh;          // for output, facets in the user's order; a plane shows a square
+  double reach = 0;   // largest distance of a vertex from the origin of the wall frame [m]
+  TriangleMesh mesh;  // for output, facets in the user's order; a plane shows a square
 };
 
 /// group_of_facet names the part each facet of the mesh belongs to; empty: all belong to part 0.
@@ -46,13 +46,13 @@ struct WallPoint {
 inline constexpr int max_wall_points = 3;
 using WallPoints = std::array<WallPoint, max_wall_points>;
 
-/// Fills `points` with the touching points of a sphere of the given radius; returns how many. `near` lists the
-/// facets to look at: every facet closer than the radius must be among them.
+/// Fills `points` with the touching points of a sphere of the given radius; returns how many. `near` lists
+/// the facets to look at: every facet closer than the radius must be among them.
 int touching_points(const WallShape& shape, const int* near, int n_near, const Vec3& centre, double radius,
                     WallPoints& points);
 
-/// Visits, ascending, the facets of a mesh nearer to `centre` than `radius`, until visit(facet) returns true. Returns
-/// whether it did.
+/// Visits, ascending, the facets of a mesh nearer to `centre` than `radius`, until visit(facet) returns true.
+/// Returns whether it did.
 template <class Visit>
 bool any_near_facet(const WallShape& shape, const Vec3& centre, double radius, Visit&& visit);
 

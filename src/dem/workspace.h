@@ -12,14 +12,14 @@ namespace trackbed {
 
 /// When the candidates of a pair were last looked for, and when to look again.
 struct PairSearch {
-  Vec3 offset = Vec3::Zero();   // of body 2 in the frame of body 1, then
-  Quat turn = Quat::Identity(); // of body 2 relative to body 1, then
-  double range = -1;            // motion since then that the list allows; negative: there is none yet [m]
-  double due = -1;              // sum of both bodies' travel at which their motion must be measured [m]
+  Vec3 offset = Vec3::Zero();    // of body 2 in the frame of body 1, then
+  Quat turn = Quat::Identity();  // of body 2 relative to body 1, then
+  double range = -1;             // motion since then that the list allows; negative: there is none yet [m]
+  double due = -1;               // sum of both bodies' travel at which their motion must be measured [m]
 };
 
-/// Candidate geometry of a PairBlock: for each pair of n candidates eight columns of n numbers, namely place of
-/// pebble a in the frame of i (3), of pebble b in the frame of j (3), sum of radii, radius of a.
+/// Candidate geometry of a PairBlock: for each pair of n candidates eight columns of n numbers, namely place
+/// of pebble a in the frame of i (3), of pebble b in the frame of j (3), sum of radii, radius of a.
 struct PairGeometry {
   static constexpr int columns = 8;
   std::vector<PairSearch> search;
@@ -28,8 +28,8 @@ struct PairGeometry {
 
 /// Candidate geometry of a WallBlock: the pebble, and the facets near it.
 struct WallCandidate {
-  Vec3 centre;    // in the frame of the clump [m]
-  double radius;  // [m]
+  Vec3 centre;                // in the frame of the clump [m]
+  double radius;              // [m]
   int first_facet, n_facets;  // in WallGeometry::facets
 };
 struct WallGeometry {
@@ -64,18 +64,18 @@ struct Profile {
 
 struct Workspace {
   // Of each clump.
-  std::vector<Mat3> rotation;          // body axes to world
-  std::vector<double> bound;           // bounding radius [m]
-  std::vector<double> travel;          // length of way of its farthest point since the start [m]
-  std::vector<Vec3> position_at_build; // when the pairs were made [m]
+  std::vector<Mat3> rotation;           // body axes to world
+  std::vector<double> bound;            // bounding radius [m]
+  std::vector<double> travel;           // length of way of its farthest point since the start [m]
+  std::vector<Vec3> position_at_build;  // when the pairs were made [m]
   // Of each wall.
   std::vector<Mat3> wall_rotation;
   std::vector<double> wall_travel;
   std::vector<double> wall_travel_at_build;
 
-  double skin = 0, margin = 0;         // [m]
-  bool pairs_are_valid = false;        // false: make all pairs anew before the next forces
-  double largest_shift2 = 0;           // of a clump since the pairs were made, squared [m^2]
+  double skin = 0, margin = 0;   // [m]
+  bool pairs_are_valid = false;  // false: make all pairs anew before the next forces
+  double largest_shift2 = 0;     // of a clump since the pairs were made, squared [m^2]
 
   std::vector<PairGeometry> pair_geometry;  // beside State::pair_blocks
   std::vector<WallGeometry> wall_geometry;  // beside State::wall_blocks

@@ -31,7 +31,7 @@ ClumpTemplate make_clump_template(std::string name, std::vector<Pebble> pebbles,
     t.smallest_radius = std::min(t.smallest_radius, p.radius);
   }
   t.surface = std::move(surface);
-  t.volume = volume;
+  t.volume = t.pebble_volume = volume;
   t.inertia = inertia;
   t.sieve_size = sieve_size;
   return t;

@@ -21,18 +21,19 @@ struct Pebble {
 /// inertia x s^5.
 struct ClumpTemplate {
   std::string name;
-  std::vector<Pebble> pebbles;   // in the order of the tree's leaves
-  SphereTree tree;               // bounding spheres over the pebbles
-  TriangleMesh surface;          // the stone's mesh in the same frame; empty for a ball made from a radius
-  double volume = 0;             // of the mesh [m^3]
-  Vec3 inertia = Vec3::Zero();   // principal moments at density 1 [m^5], ascending
-  double bounding_radius = 0;    // largest |centre| + radius [m]
-  double smallest_radius = 0;    // of a pebble [m]
-  double sieve_size = 0;         // side of the smallest square hole it passes [m]
+  std::vector<Pebble> pebbles;  // in the order of the tree's leaves
+  SphereTree tree;              // bounding spheres over the pebbles
+  TriangleMesh surface;         // the stone's mesh in the same frame; empty for a ball made from a radius
+  double volume = 0;            // of the mesh [m^3]
+  double pebble_volume = 0;     // of the union of the pebbles [m^3]
+  Vec3 inertia = Vec3::Zero();  // principal moments at density 1 [m^5], ascending
+  double bounding_radius = 0;   // largest |centre| + radius [m]
+  double smallest_radius = 0;   // of a pebble [m]
+  double sieve_size = 0;        // side of the smallest square hole it passes [m]
 };
 
-/// Sorts the pebbles into the tree's order and fills tree and radii.
-/// Throws InputError when there is no pebble or a radius is not positive.
+/// Sorts the pebbles into the tree's order and fills tree and radii; the pebbles are taken to fill the
+/// volume. Throws InputError when there is no pebble or a radius is not positive.
 ClumpTemplate make_clump_template(std::string name, std::vector<Pebble> pebbles, double volume,
                                   const Vec3& inertia, TriangleMesh surface = {}, double sieve_size = 0);
 

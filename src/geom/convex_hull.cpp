@@ -11,8 +11,8 @@
 namespace trackbed {
 namespace {
 
-/// Puts vertices and facets in an order that depends on places alone: CGAL's follows addresses in memory, and the
-/// rounding of every sum over the hull would with it.
+/// Puts vertices and facets in an order that depends on places alone: CGAL's follows addresses in memory, and
+/// the rounding of every sum over the hull would with it.
 TriangleMesh in_order(const TriangleMesh& mesh) {
   const auto is_before = [](const Vec3& a, const Vec3& b) {
     return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);

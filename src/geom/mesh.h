@@ -10,7 +10,7 @@ namespace trackbed {
 
 /// An indexed triangle mesh. Facets of a closed mesh turn anticlockwise seen from outside.
 struct TriangleMesh {
-  std::vector<Vec3> vertices;             // [m]
+  std::vector<Vec3> vertices;              // [m]
   std::vector<std::array<int, 3>> facets;  // indices into vertices
 
   std::array<Vec3, 3> corners(std::size_t facet) const {

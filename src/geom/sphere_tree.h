@@ -28,8 +28,8 @@ struct SphereTree {
   std::vector<Node> nodes;
   std::vector<int> order;
 
-  /// Visits, ascending, the items below every node whose bound is_near(Sphere) finds near, until visit(item) returns
-  /// true. Returns whether it did.
+  /// Visits, ascending, the items below every node whose bound is_near(Sphere) finds near, until visit(item)
+  /// returns true. Returns whether it did.
   template <class IsNear, class Visit>
   bool any(IsNear&& is_near, Visit&& visit) const {
     std::array<int, 64> stack;  // a tree that halves its items is never that deep

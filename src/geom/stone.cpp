@@ -17,6 +17,7 @@ Stone make_stone(const TriangleMesh& solid, const std::string& name, const Clump
   stone.error = clump_error(surface, pebbles);
   stone.clump = make_clump_template(name, std::move(pebbles), mass.volume, mass.principal, std::move(surface),
                                     stone.shape.sieve_size);
+  stone.clump.pebble_volume = stone.error.volume_ratio * mass.volume;
   return stone;
 }
 

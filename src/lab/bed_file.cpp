@@ -36,7 +36,8 @@ std::vector<double> numbers_of(std::string_view line, const std::filesystem::pat
     at = next;
   }
   if (!values.empty() && values.size() != 4 && values.size() != 5)
-    throw InputError(fmt::format("{}:{}: {} numbers; a line is x y z r [clump]", file.string(), number, values.size()));
+    throw InputError(
+        fmt::format("{}:{}: {} numbers; a line is x y z r [clump]", file.string(), number, values.size()));
   if (!values.empty() && values[3] <= 0)
     throw InputError(fmt::format("{}:{}: the radius is not positive", file.string(), number));
   return values;
@@ -103,8 +104,8 @@ Vec3 mean_centre(const std::vector<Pebble>& spheres) {
   return sum / static_cast<double>(spheres.size());
 }
 
-/// Rotation and shift that carry the spheres of one stone onto those of an equal one, listed in the same order
-/// (Kabsch 1976).
+/// Rotation and shift that carry the spheres of one stone onto those of an equal one, listed in the same
+/// order (Kabsch 1976).
 Pose fit(const std::vector<Pebble>& from, const std::vector<Pebble>& to) {
   const Vec3 a = mean_centre(from), b = mean_centre(to);
   Mat3 covariance = Mat3::Zero();

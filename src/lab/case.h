@@ -30,7 +30,7 @@ struct StonesInput {
   double distance = 2.6;                     // [rad]
   double ratio = 0.3;
   int max_pebbles = 0;
-  double largest_elongation = 3;             // stones with a longer L/S are left out
+  double largest_elongation = 3;  // stones with a longer L/S are left out
   std::string material = "ballast";
   GradingInput grading;
 };
@@ -85,13 +85,13 @@ struct NumericsInput {
 
 /// What is written, and when; see lab/recorder.h.
 struct RecordInput {
-  double every = 1e-3;                           // between two rows of series.csv [s]
-  std::vector<std::string> measures;             // further columns of series.csv
+  double every = 1e-3;                                         // between two rows of series.csv [s]
+  std::vector<std::string> measures;                           // further columns of series.csv
   std::vector<double> force_bins{100, 500, 1000, 2000, 3000};  // limits of the histogram [N]
-  bool tables = true;                            // contacts.csv and stones.csv at stage ends
-  std::optional<double> paraview_every;          // [s]; default: at stage ends only
-  std::string paraview_stones = "surfaces";      // surfaces | pebbles | none
-  bool picture = true;                           // bed.png at stage ends
+  bool tables = true;                                          // contacts.csv and stones.csv at stage ends
+  std::optional<double> paraview_every;                        // [s]; default: at stage ends only
+  std::string paraview_stones = "surfaces";                    // surfaces | pebbles | none
+  bool picture = true;                                         // bed.png at stage ends
 };
 
 struct CaseInput {
@@ -109,9 +109,9 @@ struct CaseInput {
 
 void declare(Fields& f, CaseInput& in);
 
-/// Checks what the declaration alone cannot (names that must exist, shapes that must be readable) and makes the
-/// simulation: materials, stone templates, walls; bodies stand far above until a stage places them, stones are
-/// added by the fill stage. Throws InputError with file and line.
+/// Checks what the declaration alone cannot (names that must exist, shapes that must be readable) and makes
+/// the simulation: materials, stone templates, walls; bodies stand far above until a stage places them,
+/// stones are added by the fill stage. Throws InputError with file and line.
 Simulation make_simulation(const Document& document, const CaseInput& experiment);
 
 }  // namespace trackbed

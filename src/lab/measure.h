@@ -1,6 +1,6 @@
-// What is measured: a name, a unit, a line of meaning, a function of the simulation. The same measures make the
-// columns of series.csv and the entries of summary.json. To add one: a function in src/lab/measures/ and a row in
-// measures/table.cpp.
+// What is measured: a name, a unit, a line of meaning, a function of the simulation. The same measures make
+// the columns of series.csv and the entries of summary.json. To add one: a function in src/lab/measures/ and
+// a row in measures/table.cpp.
 #pragma once
 
 #include <functional>
@@ -23,12 +23,12 @@ struct Measure {
 /// All measures of a simulation: the general ones, and those of each wall and body ("sleeper.force_z").
 std::vector<Measure> measures_of(const Simulation& sim);
 
-/// Counts of contact forces between the limits [N]: below the first, between, above the last; contacts between
-/// pebbles, stone-stone and stone-wall.
+/// Counts of contact forces between the limits [N]: below the first, between, above the last; contacts
+/// between pebbles, stone-stone and stone-wall.
 std::vector<int> force_histogram(const Simulation& sim, const std::vector<double>& limits);
 
-/// Height of the bed's surface above the floor z = 0: mean over a 20 mm grid of the highest stone point, a tenth
-/// of the highest values dropped; `where` limits it in x and y [m].
+/// Height of the bed's surface above the floor z = 0: mean over a 20 mm grid of the highest stone point, a
+/// tenth of the highest values dropped; `where` limits it in x and y [m].
 double bed_surface(const Simulation& sim, const Eigen::AlignedBox2d& where);
 
 }  // namespace trackbed

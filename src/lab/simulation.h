@@ -19,9 +19,10 @@ struct Simulation {
   State state;
   Workspace work;
   std::uint64_t seed = 1;
-  Eigen::AlignedBox3d container;     // inside of the container [m]; empty: there is none
-  std::vector<Pose> wall_reference;  // where each wall and body stood at the start, or where a stage placed it
-  std::string stage;         // name of the one that runs
+  Eigen::AlignedBox3d container;  // inside of the container [m]; empty: there is none
+  std::vector<Pose>
+      wall_reference;  // where each wall and body stood at the start, or where a stage placed it
+  std::string stage;   // name of the one that runs
 
   /// Index of the wall or body of that name; -1 when there is none.
   int find_wall(std::string_view name) const;

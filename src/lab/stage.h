@@ -1,7 +1,7 @@
 // A stage of an experiment: it sets targets and says when it is done; the engine moves the stones.
 //
-// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, a child of
-// Stage and its row; and the row's name in stages/table.cpp.
+// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, a child
+// of Stage and its row; and the row's name in stages/table.cpp.
 #pragma once
 
 #include <memory>

@@ -69,7 +69,8 @@ TEST(clumps, stable_step_of_one_ball_on_a_plane_and_in_a_lattice) {
     Simulation lattice = scenes::make_scene(a);
     scenes::add_ball(lattice, Vec3::Zero());
     for (int axis = 0; axis < 3; ++axis)
-      for (double side : {-1.0, 1.0}) scenes::add_ball(lattice, side * std::nextafter(0.04, 0) * Vec3::Unit(axis));
+      for (double side : {-1.0, 1.0})
+        scenes::add_ball(lattice, side * std::nextafter(0.04, 0) * Vec3::Unit(axis));
     lattice.changed();
     EXPECT_NEAR(stable_step(lattice.model, lattice.state, lattice.work).dt / (factor * unit), 1, 1e-12);
   }

@@ -1,5 +1,5 @@
-// A whole run, from the shapes of the stones to the load, is the same bit for bit for any number of threads and any
-// setting of the search.
+// A whole run, from the shapes of the stones to the load, is the same bit for bit for any number of threads
+// and any setting of the search.
 #include <gtest/gtest.h>
 
 #include <filesystem>

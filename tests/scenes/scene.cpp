@@ -8,8 +8,8 @@ namespace trackbed::scenes {
 Simulation make_scene(const Setting& setting) {
   Simulation sim;
   Model& m = sim.model;
-  m.materials = {{"stone", 2 * setting.kn, 2 * setting.ks, setting.friction, setting.rolling_friction,
-                  setting.density}};
+  m.materials = {
+      {"stone", 2 * setting.kn, 2 * setting.ks, setting.friction, setting.rolling_friction, setting.density}};
   m.pairs = PairTable(m.materials, setting.law, setting.dashpot);
   m.templates = {make_ball_template(setting.radius)};
   m.gravity = setting.gravity;

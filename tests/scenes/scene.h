@@ -9,19 +9,19 @@
 
 namespace trackbed::scenes {
 
-/// The common data of the verification cases ("set A"): contact stiffness 1e6 N/m (piece stiffness 2e6), radius
-/// 20 mm, density 2650, no damping, no gravity unless asked for.
+/// The common data of the verification cases ("set A"): contact stiffness 1e6 N/m (piece stiffness 2e6),
+/// radius 20 mm, density 2650, no damping, no gravity unless asked for.
 struct Setting {
-  double radius = 0.02;              // [m]
-  double density = 2650;             // [kg/m^3]
-  double kn = 1e6, ks = 1e6;         // of the contact [N/m]
+  double radius = 0.02;       // [m]
+  double density = 2650;      // [kg/m^3]
+  double kn = 1e6, ks = 1e6;  // of the contact [N/m]
   double friction = 0;
   double rolling_friction = 0;
   LawKind law = LawKind::linear;
   Dashpot dashpot;
   double damping = 0;
-  Vec3 gravity = Vec3::Zero();       // [m/s^2]
-  double dt = 0;                     // fixed step [s]; 0: automatic
+  Vec3 gravity = Vec3::Zero();  // [m/s^2]
+  double dt = 0;                // fixed step [s]; 0: automatic
 };
 
 /// An empty scene: one material, the ball of the setting as template 0.

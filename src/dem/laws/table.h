@@ -10,7 +10,8 @@
 
 namespace trackbed {
 
-/// Calls function.operator()<Law>() for the law of the given kind: chosen once a pair, inlined in its contacts.
+/// Calls function.operator()<Law>() for the law of the given kind: chosen once a pair, inlined in its
+/// contacts.
 template <class Function>
 void with_law(LawKind kind, Function&& function) {
   switch (kind) {

@@ -156,8 +156,15 @@ double volume_below(const WallShape& shape, const Pose& pose, double z) {
   return volume;
 }
 
-double porosity(const Simulation& sim) {
-  const double solid = solid_volume(sim);
+double pebble_volume(const Simulation& sim) {
+  const Clumps& c = sim.state.clumps;
+  double sum = 0;
+  for (Index i = 0; i < c.id.size(); ++i)
+    sum += sim.model.templates[static_cast<Index>(c.shape[i])].pebble_volume * std::pow(c.scale[i], 3);
+  return sum;
+}
+
+double porosity(const Simulation& sim, double solid) {
   if (solid == 0) return 1.0;
   const double height = bed_height(sim);
   const double floor = sim.container.min().z();

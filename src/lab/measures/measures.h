@@ -24,14 +24,15 @@ double mean_contact_force(const Simulation& sim);     ///< magnitude, elastic [N
 double largest_contact_force(const Simulation& sim);  ///< [N]
 double largest_overlap(const Simulation& sim);        ///< over the smaller stone's equal-volume radius [-]
 
-double solid_volume(const Simulation& sim);  ///< of the stones, overlaps counted twice [m^3]
-double weight(const Simulation& sim);        ///< of stones and bodies [N]
+double pebble_volume(const Simulation& sim);  ///< of the unions of each stone's pebbles [m^3]
+double solid_volume(const Simulation& sim);   ///< of the stones, overlaps counted twice [m^3]
+double weight(const Simulation& sim);         ///< of stones and bodies [N]
 double median_size(
     const Simulation& sim);  ///< half of the mass is of stones with a smaller equal-volume diameter
 
 double bed_height(const Simulation& sim);  ///< bed_surface over the whole container [m]
 /// Share of pores in the container up to the bed's surface, bodies below it left out; 1 without stones.
-double porosity(const Simulation& sim);
+double porosity(const Simulation& sim, double solid);  ///< with this volume of solids [m^3]
 /// Part of a body below height z [m^3]; its mesh must be closed.
 double volume_below(const WallShape& shape, const Pose& pose, double z);
 

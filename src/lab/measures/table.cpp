@@ -77,8 +77,11 @@ std::vector<Measure> bed_measures() {
   using enum Dimension;
   return {
       {"bed_height", length, "of the bed's surface above z = 0, beside bodies", bed_height},
-      {"porosity", none, "share of pores in the container below the bed's surface, bodies left out",
-       porosity},
+      {"porosity", none,
+       "share of pores in the container below the bed's surface, bodies left out; stones by their meshes",
+       [](const Simulation& sim) { return porosity(sim, solid_volume(sim)); }},
+      {"porosity_of_pebbles", none, "the same with stones by their pebbles, which fill less than the mesh",
+       [](const Simulation& sim) { return porosity(sim, pebble_volume(sim)); }},
   };
 }
 

@@ -27,10 +27,14 @@ class Hold : public Stage {
   double end_ = 0;
 };
 
-std::unique_ptr<Stage> HoldInput::make(const CaseInput&) const { return std::make_unique<Hold>(*this); }
+std::unique_ptr<Stage> HoldInput::make(const CaseInput&) const {
+  return std::make_unique<Hold>(*this);
+}
 
 }  // namespace
 
-Kind<StageInput> hold_stage() { return kind_of<StageInput, HoldInput>("hold", "lets time pass"); }
+Kind<StageInput> hold_stage() {
+  return kind_of<StageInput, HoldInput>("hold", "lets time pass");
+}
 
 }  // namespace trackbed
