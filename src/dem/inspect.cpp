@@ -84,9 +84,7 @@ void inspect(const Model& model, const State& state, const Workspace& work) {
   visit_touching(model, state, [&](const Touching& t) {
     double radius = volume_radius(model, c, static_cast<Index>(t.clump_1));
     if (t.clump_2 >= 0) radius = std::min(radius, volume_radius(model, c, static_cast<Index>(t.clump_2)));
-    // A pebble whose centre passes a facet would be pushed out on the other side.
-    constexpr double nearly_through = 0.8;
-    if (t.clump_2 < 0 && t.overlap > nearly_through * t.radius &&
+    if (t.clump_2 < 0 && t.overlap > limits.through * t.radius &&
         !model.walls[static_cast<Index>(t.wall)].shape.is_plane)
       fail(state, static_cast<Index>(t.clump_1),
            fmt::format("a pebble of {:.3g} mm radius is about to be pushed through wall {}", 1e3 * t.radius,

@@ -20,6 +20,7 @@ Simulation heap(std::uint64_t seed) {
   Rng rng(seed, "search");
   Simulation sim = scenes::make_scene({});
   sim.model.limits.overlap = 1e9;
+  sim.model.limits.through = 1e9;
   sim.model.search = {rng.uniform(1e-4, 3e-3), 3e-3};
   for (int n : {1, 7, 40}) {
     std::vector<Pebble> pebbles;
