@@ -61,6 +61,7 @@ Simulation with_box(Cut cut, const Quat& turn, bool in_float, bool is_clump) {
   a.friction = 0.4;
   Simulation sim = scenes::make_scene(a);
   sim.model.limits.overlap = 1e9;
+  sim.model.limits.through = 1e9;
   sim.model.templates.push_back(
       make_clump_template("tee", {{{-0.01, 0, 0}, 0.012}, {{0.01, 0, 0}, 0.012}, {{0, 0.012, 0}, 0.01}}, 3e-5,
                           {1.5e-9, 2.2e-9, 3e-9}));
