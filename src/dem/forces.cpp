@@ -248,8 +248,7 @@ void block_forces(const Model& model, State& state, Workspace& work, Index b, do
     const ClumpPair& pair = block.pairs[k];
     PairResult& result = work.pair_results[b * PairBlock::capacity + k];
     if (pair.count == 0) {
-      if (result.contacts > 0 || result.losses.friction + result.losses.rolling > 0)
-        result = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), {}, 0};
+      result = {};  // what the last contact left, a loss of either sign, is not to be booked again
       continue;
     }
     const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
