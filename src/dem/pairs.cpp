@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "dem/inspect.h"
@@ -107,6 +108,36 @@ std::vector<std::pair<int, int>> near_walls(const Model& model, const State& sta
   return pairs;
 }
 
+std::pair<int, int> key_of(const ClumpPair& p) {
+  return {p.i, p.j};
+}
+std::pair<int, int> key_of(const WallPair& p) {
+  return {p.wall, p.clump};
+}
+
+/// Finds pairs in blocks when they are asked for in the ascending order in which they lie there.
+template <class Block>
+class OldPairs {
+ public:
+  explicit OldPairs(const std::vector<Block>& blocks) : blocks_(blocks) {}
+
+  /// Block and place in it; nothing when the pair is new.
+  std::optional<std::pair<Index, Index>> find(const std::pair<int, int>& key) {
+    for (; block_ < blocks_.size(); ++block_, pair_ = 0) {
+      const auto& pairs = blocks_[block_].pairs;
+      while (pair_ < pairs.size() && key_of(pairs[pair_]) < key) ++pair_;
+      if (pair_ == pairs.size()) continue;
+      if (key_of(pairs[pair_]) != key) return std::nullopt;
+      return std::pair(block_, pair_);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  const std::vector<Block>& blocks_;
+  Index block_ = 0, pair_ = 0;
+};
+
 /// Copies the candidates of one old clump pair behind those of a new one.
 void carry(const PairBlock& from, const PairGeometry& from_geometry, Index pair, bool with_search,
            PairBlock& to, PairGeometry& to_geometry) {
@@ -132,7 +163,7 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   std::vector<PairBlock> blocks;
   std::vector<PairGeometry> geometry;
   const bool with_search = work.pair_geometry.size() == state.pair_blocks.size();
-  Index old_block = 0, old_pair = 0;
+  OldPairs old_pairs(state.pair_blocks);
   for (const auto& [i, j] : near) {
     if (blocks.empty() || blocks.back().pairs.size() == PairBlock::capacity) {
       blocks.emplace_back();
@@ -140,21 +171,10 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
     }
     blocks.back().pairs.push_back({i, j, static_cast<int>(blocks.back().keys.size()), 0});
     geometry.back().search.emplace_back();
-    // Both lists ascend: walk the old one up to this pair.
-    while (old_block < state.pair_blocks.size()) {
-      const auto& pairs = state.pair_blocks[old_block].pairs;
-      if (old_pair == pairs.size()) {
-        ++old_block;
-        old_pair = 0;
-      } else if (std::pair(pairs[old_pair].i, pairs[old_pair].j) < std::pair(i, j)) {
-        ++old_pair;
-      } else {
-        break;
-      }
-    }
-    if (old_block == state.pair_blocks.size()) continue;
+    const auto found = old_pairs.find({i, j});
+    if (!found) continue;
+    const auto [old_block, old_pair] = *found;
     const PairBlock& old = state.pair_blocks[old_block];
-    if (old.pairs[old_pair].i != i || old.pairs[old_pair].j != j) continue;
     static const PairGeometry none;
     carry(old, with_search ? work.pair_geometry[old_block] : none, old_pair, with_search, blocks.back(),
           geometry.back());
@@ -183,26 +203,15 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
 void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
   const auto near = near_walls(model, state, work);
   std::vector<WallBlock> blocks;
-  Index old_block = 0, old_pair = 0;
+  OldPairs old_pairs(state.wall_blocks);
   for (const auto& [wall, clump] : near) {
     if (blocks.empty() || blocks.back().pairs.size() == WallBlock::capacity) blocks.emplace_back();
     WallBlock& block = blocks.back();
     block.pairs.push_back({clump, wall, static_cast<int>(block.keys.size()), 0});
-    while (old_block < state.wall_blocks.size()) {
-      const auto& pairs = state.wall_blocks[old_block].pairs;
-      if (old_pair == pairs.size()) {
-        ++old_block;
-        old_pair = 0;
-      } else if (std::pair(pairs[old_pair].wall, pairs[old_pair].clump) < std::pair(wall, clump)) {
-        ++old_pair;
-      } else {
-        break;
-      }
-    }
-    if (old_block == state.wall_blocks.size()) continue;
-    const WallBlock& old = state.wall_blocks[old_block];
-    const WallPair& from = old.pairs[old_pair];
-    if (from.wall != wall || from.clump != clump) continue;
+    const auto found = old_pairs.find({wall, clump});
+    if (!found) continue;
+    const WallBlock& old = state.wall_blocks[found->first];
+    const WallPair& from = old.pairs[found->second];
     block.pairs.back().count = from.count;
     block.keys.insert(block.keys.end(), old.keys.begin() + from.first,
                       old.keys.begin() + from.first + from.count);
