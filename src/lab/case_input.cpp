@@ -39,7 +39,8 @@ void declare(Fields& f, StonesInput& in) {
   f.integer("shapes", in.shapes, {.at_least = 1, .at_most = 1000},
             "number of shapes that the generator makes");
   f.choice("fidelity", in.fidelity, {"clump", "ball"},
-           "clump: pebbles fill the shape; ball: one pebble of equal volume");
+           "clump: pebbles fill the shape; ball: one pebble of equal volume, for which the keys of shape do "
+           "not count");
   f.quantity("distance", in.distance, Dimension::angle, {.at_least = 0, .below = 3.14159265358979},
              "Distance: largest angle between two pebbles; larger is smoother, with more pebbles");
   f.number("ratio", in.ratio, {.above = 0, .at_most = 1},

@@ -41,6 +41,56 @@ TEST(normal_contact, two_balls_exchange_their_speeds) {
   }
 }
 
+/// A fan of six coplanar facets about the origin.
+TriangleMesh fan_of_six() {
+  TriangleMesh mesh;
+  mesh.vertices.push_back(Vec3::Zero());
+  for (int k = 0; k < 6; ++k)
+    mesh.vertices.emplace_back(0.1 * std::cos(k * pi / 3), 0.1 * std::sin(k * pi / 3), 0);
+  for (int k = 1; k <= 6; ++k) mesh.facets.push_back({0, k, k % 6 + 1});
+  return mesh;
+}
+
+// V-2.
+TEST(normal_contact, ball_meets_a_plane_a_facet_an_edge_and_a_vertex_alike) {
+  const double step = 0.01;
+  Setting a;
+  a.dt = step * scenes::contact_time_scale(a);
+  struct Impact {
+    double overlap = 0, touched = 0, force = 0, speed = 0;
+  };
+  const auto impact = [&](const auto& add_support) {
+    Simulation sim = scenes::make_scene(a);
+    add_support(sim);
+    scenes::add_ball(sim, {0, 0, 0.0201}, {0, 0, -1});
+    Impact seen;
+    scenes::run_until(sim, 2e-3, [&] {
+      seen.overlap = std::max(seen.overlap, 0.02 - sim.state.clumps.position[0].z());
+      seen.force = std::max(seen.force, sim.state.clumps.force[0].z());
+      if (sim.work.touching > 0) seen.touched += a.dt;
+      return false;
+    });
+    seen.speed = sim.state.clumps.velocity[0].z();
+    return seen;
+  };
+  const Impact plane = impact([](Simulation& sim) { scenes::add_plane(sim, Vec3::Zero(), Vec3::UnitZ()); });
+  EXPECT_NEAR(plane.touched, 9.361859e-4, a.dt);
+  // The peak lies within half a step of a step: 1 - cos(step/2) of it at most.
+  EXPECT_NEAR(plane.overlap / 2.979972e-4, 1.0, 0.25 * step * step);
+  EXPECT_NEAR(plane.force / 297.997, 1.0, 0.25 * step * step);
+  EXPECT_NEAR(plane.speed, 1.0, 1e-4);
+
+  const TriangleMesh facet{{{-0.1, -0.1, 0}, {0.2, -0.1, 0}, {-0.1, 0.2, 0}}, {{0, 1, 2}}};
+  const TriangleMesh edge{{{-0.1, 0, 0}, {0, -0.1, 0}, {0.1, 0, 0}, {0, 0.1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  for (const TriangleMesh& mesh : {facet, edge, fan_of_six()}) {
+    const Impact met = impact([&](Simulation& sim) { scenes::add_plate(sim, mesh); });
+    EXPECT_NEAR(met.overlap / plane.overlap, 1.0, 1e-9) << mesh.facets.size();
+    EXPECT_NEAR(met.force / plane.force, 1.0, 1e-9) << mesh.facets.size();
+    EXPECT_NEAR(met.speed, plane.speed, 1e-9) << mesh.facets.size();
+    EXPECT_DOUBLE_EQ(met.touched, plane.touched) << mesh.facets.size();
+  }
+}
+
 double rebound(double ratio, DashpotMode mode, double step) {
   Setting a;
   a.dashpot = {ratio, 0, mode};
