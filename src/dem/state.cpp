@@ -37,7 +37,7 @@ int add_clump(const Model& model, State& state, int shape, double scale, int mat
   const ClumpTemplate& t = model.templates[static_cast<Index>(shape)];
   const double density = model.materials[static_cast<Index>(material)].density;
   Clumps& c = state.clumps;
-  c.id.push_back(c.id.empty() ? 0 : *std::max_element(c.id.begin(), c.id.end()) + 1);
+  c.id.push_back(c.next_id++);
   c.shape.push_back(shape);
   c.material.push_back(material);
   c.scale.push_back(scale);
@@ -111,6 +111,7 @@ void remove_clumps(State& state, const std::vector<int>& clumps) {
 std::uint64_t hash(const State& state) {
   Hash h;
   const Clumps& c = state.clumps;
+  h.add(c.next_id);
   for (Index i = 0; i < c.id.size(); ++i) {
     h.add(c.id[i]);
     h.add(c.shape[i]);

@@ -20,6 +20,7 @@ struct StoneLosses : Losses {
 
 /// The stones, one entry a clump in each array.
 struct Clumps {
+  int next_id = 0;         // of the stone that is added next: no two stones ever share one
   std::vector<int> id;     // stays with the stone
   std::vector<int> shape;  // index into Model::templates
   std::vector<int> material;

@@ -56,6 +56,7 @@ class Fill : public Stage {
     column_.max().z() =
         column_.min().z() + volume / (in_.density * extent.x() * extent.y()) + 2.0 * sizes_.front();
     cell_ = largest_bound(sim);
+    for (int stone = 0; stone < sim.state.clumps.size(); ++stone) remember(sim, stone);
     for (double size : sizes_) place(sim, size, rng);
     sim.model.limits.domain.extend(column_);
     sim.changed();
@@ -80,6 +81,11 @@ class Fill : public Stage {
     double bound = 0;
     for (const ClumpTemplate& t : sim.model.templates)
       bound = std::max(bound, t.bounding_radius * scale_to_size(stones_.grading, t, sizes_.front()));
+    const Clumps& there = sim.state.clumps;  // from an earlier stage
+    for (std::size_t c = 0; c < there.id.size(); ++c)
+      bound =
+          std::max(bound, there.scale[c] *
+                              sim.model.templates[static_cast<std::size_t>(there.shape[c])].bounding_radius);
     return 2.0 * bound + in_.clearance;
   }
 
@@ -130,7 +136,11 @@ class Fill : public Stage {
         throw InputError(fmt::format("stage {}: a stone of {:.1f} mm does not fit into the container",
                                      in_.name, 1e3 * size));
     }
-    const auto [x, y, z] = place_of(c.position[k]);
+    remember(sim, stone);
+  }
+
+  void remember(const Simulation& sim, int stone) {
+    const auto [x, y, z] = place_of(sim.state.clumps.position[static_cast<std::size_t>(stone)]);
     cells_[cell_at(x, y, z)].push_back(stone);
   }
 

@@ -72,6 +72,9 @@ TEST(State, RemoveKeepsTheOthersMemory) {
   EXPECT_LT((kept - shear).norm(), 1e-14 * shear.norm());
   EXPECT_EQ(add_clump(sim.model, sim.state, 0, 1, 0, {}), 2);
   EXPECT_EQ(sim.state.clumps.id[2], 3);  // not 0, which was another stone
+  remove_clumps(sim.state, {2});
+  add_clump(sim.model, sim.state, 0, 1, 0, {});
+  EXPECT_EQ(sim.state.clumps.id[2], 4);  // the last one was another stone, too
 }
 
 TEST(State, HashChangesWithEverythingThatBearsOnTheFuture) {
