@@ -138,7 +138,8 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
   check_names(document, in);
   for (const auto& [name, wall] : in.walls) {
     const int material = material_index(document, sim, wall.input->here + ".material", wall.input->material);
-    use_mesh(document, wall.input->here + ".file", [&] { wall.input->build(name, material, sim); });
+    use_mesh(document, wall.input->here + ".file",
+             [&, &wall = wall, &name = name] { wall.input->build(name, material, sim); });
   }
   for (const auto& [name, body] : in.bodies)
     build_body(name, *body.input,
