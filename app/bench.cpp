@@ -47,7 +47,7 @@ int bench_command(int argc, char** argv) {
   sim.model.local_damping = 0.7;
   sim.model.time_step.fixed = o.dt;
   sim.model.search.skin = o.skin;
-  sim.changed();
+  sim.number_by_place();
   const double warm = seconds_of(sim, o.warm);
   const int steps = o.steps > 0 ? o.steps : std::max(10, static_cast<int>(o.warm / warm));
   const Profile before = sim.work.profile;

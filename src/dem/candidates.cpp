@@ -1,6 +1,7 @@
 // Level two of the search for two stones: their two trees are walked against each other.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "dem/pair_motion.h"
@@ -13,15 +14,14 @@ using Index = std::size_t;
 
 struct Found {
   PebblePair key;
-  Vec3 a, b;
-  double radius_a, radius_b;
+  PairCandidate candidate;
 };
 
 /// Per-thread memory of a search, kept from call to call so that a step allocates nothing.
 struct Scratch {
   std::vector<Found> found;
   std::vector<std::pair<int, int>> stack;
-  std::vector<double> columns;
+  std::vector<PairCandidate> candidates;
   std::vector<PebblePair> keys;
   std::vector<ContactMemory> memory;
 };
@@ -59,7 +59,7 @@ void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj
           const double reach = si * pa.radius + sj * pb.radius + skin;
           const Vec3 xa = si * pa.centre;
           if ((xb - xa).squaredNorm() <= reach * reach)
-            s.found.push_back({{k, l}, xa, local_b, si * pa.radius, sj * pb.radius});
+            s.found.push_back({{k, l}, {xa, si * pa.radius, local_b, si * pa.radius + sj * pb.radius}});
         }
       }
     } else if (nb.is_leaf() || (!na.is_leaf() && si * na.bound.radius >= sj * nb.bound.radius)) {
@@ -82,8 +82,8 @@ void keep_touching(const PairBlock& block, const ClumpPair& p, const Model& mode
     const PebblePair key = block.keys[k];
     const Pebble& a = model.templates[static_cast<Index>(c.shape[i])].pebbles[static_cast<Index>(key.a)];
     const Pebble& b = model.templates[static_cast<Index>(c.shape[j])].pebbles[static_cast<Index>(key.b)];
-    s.found.push_back(
-        {key, c.scale[i] * a.centre, c.scale[j] * b.centre, c.scale[i] * a.radius, c.scale[j] * b.radius});
+    const double radius_a = c.scale[i] * a.radius, radius_b = c.scale[j] * b.radius;
+    s.found.push_back({key, {c.scale[i] * a.centre, radius_a, c.scale[j] * b.centre, radius_a + radius_b}});
   }
   std::sort(s.found.begin(), s.found.end(),
             [](const Found& x, const Found& y) { return is_before(x.key, y.key); });
@@ -97,7 +97,7 @@ void replace_candidates(Index pair, Scratch& s, PairBlock& block, PairGeometry& 
   const Index n = s.found.size();
   s.keys.resize(n);
   s.memory.assign(n, {});
-  s.columns.resize(n * PairGeometry::columns);
+  s.candidates.resize(n);
   Index old = static_cast<Index>(p.first);
   const Index old_end = old + static_cast<Index>(p.count);
   for (Index k = 0; k < n; ++k) {
@@ -105,62 +105,86 @@ void replace_candidates(Index pair, Scratch& s, PairBlock& block, PairGeometry& 
     s.keys[k] = f.key;
     while (old < old_end && is_before(block.keys[old], f.key)) ++old;
     if (old < old_end && !is_before(f.key, block.keys[old])) s.memory[k] = block.memory[old];
-    const double column[PairGeometry::columns] = {
-        f.a.x(), f.a.y(), f.a.z(), f.b.x(), f.b.y(), f.b.z(), f.radius_a + f.radius_b, f.radius_a};
-    for (Index c = 0; c < PairGeometry::columns; ++c) s.columns[c * n + k] = column[c];
+    s.candidates[k] = f.candidate;
   }
-  const auto splice = [&](auto& into, const auto& from, Index width) {
-    const auto first = into.begin() + static_cast<std::ptrdiff_t>(static_cast<Index>(p.first) * width);
-    const auto common = static_cast<std::ptrdiff_t>(std::min(n, static_cast<Index>(p.count)) * width);
+  const auto splice = [&](auto& into, const auto& from) {
+    const auto first = into.begin() + p.first;
+    const auto common = std::min(static_cast<std::ptrdiff_t>(n), static_cast<std::ptrdiff_t>(p.count));
     std::copy(from.begin(), from.begin() + common, first);
     if (n > static_cast<Index>(p.count))
       into.insert(first + common, from.begin() + common, from.end());
     else
-      into.erase(first + common, first + static_cast<std::ptrdiff_t>(static_cast<Index>(p.count) * width));
+      into.erase(first + common, first + p.count);
   };
-  splice(block.keys, s.keys, 1);
-  splice(block.memory, s.memory, 1);
-  splice(geometry.columns_of_pairs, s.columns, PairGeometry::columns);
+  splice(block.keys, s.keys);
+  splice(block.memory, s.memory);
+  splice(geometry.candidates, s.candidates);
   const int more = static_cast<int>(n) - p.count;
   p.count = static_cast<int>(n);
   for (Index later = pair + 1; later < block.pairs.size(); ++later) block.pairs[later].first += more;
+}
+
+/// How near pebbles must be to become candidates of a pair [m]: a small distance keeps idle candidates out of
+/// the lists of stones that hardly move, a larger one spares fast stones a search at every step.
+double skin_of(const State& state, const Workspace& work, Index i, Index j) {
+  constexpr double lasts = 200, smallest = 0.1;  // steps; share of the largest skin
+  const Clumps& c = state.clumps;
+  const double speed = c.velocity[i].norm() + c.velocity[j].norm() +
+                       work.bound[i] * c.angular_velocity[i].norm() +
+                       work.bound[j] * c.angular_velocity[j].norm();
+  return std::clamp(lasts * state.planned_dt * speed, smallest * work.skin, work.skin);
+}
+
+/// A pair of a block that is due.
+struct DuePair {
+  PairBlock& block;
+  PairGeometry& geometry;
+  Index pair;
+};
+
+/// Measures how far the two stones have moved; looks for their candidates if that is too far.
+void search_pair(const Model& model, const State& state, const Workspace& work, const DuePair& due) {
+  const Clumps& c = state.clumps;
+  const ClumpPair& pair = due.block.pairs[due.pair];
+  PairSearch& search = due.geometry.search[due.pair];
+  const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
+  const double travel = work.travel[i] + work.travel[j];
+  const Relative now = relative_pose(c.position[i], c.orientation[i], c.position[j], c.orientation[j]);
+  const double left = search.range - motion_since(search, now, work.bound[j]);
+  if (left > nearly_used_up * search.range) {
+    search.due = travel + left;
+    return;
+  }
+  const double apart = now.offset.norm() - work.bound[i] - work.bound[j];
+  const double skin = skin_of(state, work, i, j);
+  scratch().found.clear();
+  if (apart <= skin)
+    find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
+                    model.templates[static_cast<Index>(c.shape[j])], c.scale[j], now, skin, scratch());
+  if (apart <= skin || pair.count > 0) {
+    keep_touching(due.block, pair, model, c, scratch());
+    replace_candidates(due.pair, scratch(), due.block, due.geometry);
+  }
+  // Stones that are far apart touch no sooner than when they have come nearer by that much.
+  const double range = std::max(apart, skin);
+  search = {now.offset, now.turn, range, travel + range};
 }
 
 }  // namespace
 
 void refresh(const Model& model, const State& state, const Workspace& work, PairBlock& block,
              PairGeometry& geometry) {
+  if (work.way < geometry.quiet_until) return;
+  double least = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < block.pairs.size(); ++k) {
     PairSearch& search = geometry.search[k];
     const Index i = static_cast<Index>(block.pairs[k].i), j = static_cast<Index>(block.pairs[k].j);
     const double travel = work.travel[i] + work.travel[j];
-    if (travel <= search.due) continue;
-
-    const Relative now = relative_pose(state.clumps.position[i], state.clumps.orientation[i],
-                                       state.clumps.position[j], state.clumps.orientation[j]);
-    const double left = search.range - motion_since(search, now, work.bound[j]);
-    if (left > nearly_used_up * work.skin) {
-      search.due = travel + left;
-      continue;
-    }
-    const double apart = now.offset.norm() - work.bound[i] - work.bound[j];
-    if (apart > work.skin) {
-      // Too far to touch before they have come nearer by that much.
-      if (block.pairs[k].count > 0) {
-        scratch().found.clear();
-        keep_touching(block, block.pairs[k], model, state.clumps, scratch());
-        replace_candidates(k, scratch(), block, geometry);
-      }
-      search = {now.offset, now.turn, apart, travel + apart};
-      continue;
-    }
-    const Clumps& c = state.clumps;
-    find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
-                    model.templates[static_cast<Index>(c.shape[j])], c.scale[j], now, work.skin, scratch());
-    keep_touching(block, block.pairs[k], model, c, scratch());
-    replace_candidates(k, scratch(), block, geometry);
-    search = {now.offset, now.turn, work.skin, travel + work.skin};
+    if (travel > search.due) search_pair(model, state, work, {block, geometry, k});
+    least = std::min(least, search.due - travel);
   }
+  // Two stones use up what is left the sooner the farther the fastest of all stones goes.
+  geometry.quiet_until = work.way + 0.5 * least;
 }
 
 }  // namespace trackbed

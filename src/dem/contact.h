@@ -1,60 +1,77 @@
 // One touching contact: its motion, its memory, its force. Bodies are numbered 1 and 2; the normal points
-// from 1 to 2; force and moment are those that body 2 receives; pressing is positive.
+// from 1 to 2; force and moment are those that body 2 receives; pressing is positive. All for one contact
+// (double) or for four at once (Lanes).
 #pragma once
 
+#include "base/lanes.h"
 #include "base/vec.h"
 
 namespace trackbed {
 
-/// What a contact remembers from step to step. No overlap says that it does not touch.
-struct ContactMemory {
-  double overlap = 0;  // [m]
-  Vec3 normal = Vec3::Zero();
-  Vec3 shear = Vec3::Zero();    // shear force on body 2 [N]
-  Vec3 rolling = Vec3::Zero();  // rolling moment on body 2 [N m]
+/// What a contact remembers from step to step. No overlap says that it does not touch. Each vector begins a
+/// row of four numbers.
+template <class Real>
+struct ContactMemoryOf {
+  alignas(32) Vec3Of<Real> normal = Vec3Of<Real>::Zero();
+  Real overlap = 0.0;                                       // [m]
+  alignas(32) Vec3Of<Real> shear = Vec3Of<Real>::Zero();    // shear force on body 2 [N]
+  alignas(32) Vec3Of<Real> rolling = Vec3Of<Real>::Zero();  // rolling moment on body 2 [N m]
 
-  bool touches() const { return overlap > 0; }
+  auto touches() const { return overlap > Real(0.0); }
 };
+using ContactMemory = ContactMemoryOf<double>;
 
 /// Geometry and motion of a touching contact during one step.
-struct ContactKinematics {
-  double overlap;       // [m], > 0
-  Vec3 normal;          // unit vector from 1 to 2
-  Vec3 velocity;        // of body 2 relative to body 1 at the contact point [m/s]
-  Vec3 spin;            // of body 2 relative to body 1 [rad/s]
-  double mean_twist;    // mean spin of the two bodies about the normal [rad/s]
-  double radius;        // effective: 1/(1/R1 + 1/R2) [m]
-  double reduced_mass;  // m1 m2/(m1 + m2); of the one body against a wall [kg]
-  double dt;            // [s]
+template <class Real>
+struct ContactKinematicsOf {
+  Real overlap;           // [m], > 0
+  Vec3Of<Real> normal;    // unit vector from 1 to 2
+  Vec3Of<Real> velocity;  // of body 2 relative to body 1 at the contact point [m/s]
+  Vec3Of<Real> spin;      // of body 2 relative to body 1 [rad/s]
+  Real mean_twist;        // mean spin of the two bodies about the normal [rad/s]
+  Real radius;            // effective: 1/(1/R1 + 1/R2) [m]
+  Real reduced_mass;      // m1 m2/(m1 + m2); of the one body against a wall [kg]
+  double dt;              // [s]
 };
+using ContactKinematics = ContactKinematicsOf<double>;
 
 /// Energy a contact turned into heat during one step [J].
-struct Losses {
-  double friction = 0;
-  double rolling = 0;
-  double dashpot = 0;
+template <class Real>
+struct LossesOf {
+  Real friction = 0.0;
+  Real rolling = 0.0;
+  Real dashpot = 0.0;
 
-  Losses& operator+=(const Losses& other) {
+  LossesOf& operator+=(const LossesOf& other) {
     friction += other.friction;
     rolling += other.rolling;
     dashpot += other.dashpot;
     return *this;
   }
 };
+using Losses = LossesOf<double>;
 
-struct ContactForce {
-  Vec3 force;   // on body 2 [N]
-  Vec3 moment;  // on body 2 at the contact point [N m]
+template <class Real>
+struct ContactForceOf {
+  Vec3Of<Real> force;   // on body 2 [N]
+  Vec3Of<Real> moment;  // on body 2 at the contact point [N m]
 };
+using ContactForce = ContactForceOf<double>;
 
 /// Rotates a stored tangential vector by the smallest rotation that carries the old normal to the new one,
 /// then by `twist` radians about the new one. Keeps its length.
-inline Vec3 carry_along(const Vec3& stored, const Vec3& old_normal, const Vec3& normal, double twist) {
-  const Vec3 axis = old_normal.cross(normal);  // length sin of the angle
-  const double cosine = old_normal.dot(normal);
-  const Vec3 tilted = cosine * stored + axis.cross(stored) + axis.dot(stored) / (1.0 + cosine) * axis;
-  const double t = 0.5 * twist * (1.0 + twist * twist / 12.0);  // tan(twist/2) to fifth order
-  const Vec3 turned = ((1.0 - t * t) * tilted + 2.0 * t * normal.cross(tilted)) / (1.0 + t * t);
+template <class Real>
+Vec3Of<Real> carry_along(const Vec3Of<Real>& stored, const Vec3Of<Real>& old_normal,
+                         const Vec3Of<Real>& normal, const Real& twist) {
+  const Real one = 1.0;
+  const Vec3Of<Real> axis = old_normal.cross(normal);  // length sin of the angle
+  const Real cosine = old_normal.dot(normal);
+  const Real along = axis.dot(stored) / (one + cosine);
+  const Vec3Of<Real> tilted = cosine * stored + axis.cross(stored) + along * axis;
+  const Real t = Real(0.5) * twist * (one + twist * twist * Real(1.0 / 12.0));  // tan(twist/2), fifth order
+  const Real shrink = one / (one + t * t);
+  const Vec3Of<Real> turned =
+      ((one - t * t) * shrink) * tilted + (Real(2.0) * t * shrink) * normal.cross(tilted);
   return turned - turned.dot(normal) * normal;
 }
 

@@ -12,6 +12,9 @@ namespace trackbed {
 /// the same bits for any number of threads.
 void contact_forces(const Model& model, State& state, Workspace& work, double dt);
 
+/// The part of it that one block of wall pairs does; returns the number of contacts.
+int wall_block_forces(const Model& model, State& state, Workspace& work, std::size_t block, double dt);
+
 /// Sums the pairs' results on the stones and walls.
 void gather_forces(const Model& model, State& state, Workspace& work, double dt);
 

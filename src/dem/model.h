@@ -39,8 +39,9 @@ struct TimeStepRule {
 
 /// When a run is stopped because its result would be wrong.
 struct Limits {
-  double overlap = 0.25;       // of the smaller stone's equal-volume radius
-  double through = 0.8;  // of a pebble's radius, into a mesh: past its centre it would come out on the other side
+  double overlap = 0.25;  // of the smaller stone's equal-volume radius
+  double through =
+      0.8;  // of a pebble's radius, into a mesh: past its centre it would come out on the other side
   double speed = 100;          // of any stone [m/s]
   Eigen::AlignedBox3d domain;  // no stone's centre leaves it; empty: anywhere
 };

@@ -1,7 +1,9 @@
 #include "dem/motion.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 #include "dem/rotation.h"
 
@@ -10,54 +12,156 @@ namespace {
 
 using Index = std::size_t;
 
-double damped_component(double force, double velocity, double alpha) {
-  if (velocity > 0) return force - alpha * std::abs(force);
-  if (velocity < 0) return force + alpha * std::abs(force);
-  return force;
+template <class Real>
+Real damped_component(const Real& force, const Real& velocity, double alpha) {
+  const Real loss = Real(alpha) * abs(force), zero = 0.0;
+  return force - select(velocity > zero, loss, select(velocity < zero, -loss, zero));
+}
+
+template <class Real>
+Vec3Of<Real> damped_vector(const Vec3Of<Real>& unbalanced, const Vec3Of<Real>& velocity, double alpha) {
+  return {damped_component(unbalanced.x(), velocity.x(), alpha),
+          damped_component(unbalanced.y(), velocity.y(), alpha),
+          damped_component(unbalanced.z(), velocity.z(), alpha)};
 }
 
 /// Adds force x kick to the momentum-like quantity; returns the energy that damping took. `rate` is the
 /// velocity that goes with `momentum` through the diagonal `inertia`.
-double kick(const Vec3& unbalanced, const Vec3& inertia, double alpha, double duration, Vec3& rate) {
-  const Vec3 force = damped(unbalanced, rate, alpha);
-  const Vec3 before = rate;
-  rate += duration * force.cwiseQuotient(inertia);
-  return 0.5 * duration * (unbalanced - force).dot(before + rate);
+template <class Real>
+Real kick(const Vec3Of<Real>& unbalanced, const Vec3Of<Real>& inertia, double alpha, double duration,
+          Vec3Of<Real>& rate) {
+  const Vec3Of<Real> force = damped_vector(unbalanced, rate, alpha);
+  const Vec3Of<Real> before = rate;
+  rate += Real(duration) * Vec3Of<Real>(force.cwiseQuotient(inertia));
+  return Real(0.5 * duration) * (unbalanced - force).dot(before + rate);
 }
 
 /// Length of the chord that a point at distance 1 from the centre has gone at most.
-double chord(const Quat& before, const Quat& after) {
-  return 2.0 * (before.conjugate() * after).vec().norm();
+template <class Real>
+Real chord(const TurnOf<Real>& before, const TurnOf<Real>& after) {
+  const auto& [w, x, y, z] = before;
+  const auto& [a, b, c, d] = after;
+  const Vec3Of<Real> turn(w * b - a * x - y * d + z * c, w * c - a * y - z * b + x * d,
+                          w * d - a * z - x * c + y * b);
+  return Real(2.0) * sqrt(turn.squaredNorm());
 }
 
-void move_clump(const Model& model, State& state, Workspace& work, Index c, double kick_time, double dt) {
-  Clumps& s = state.clumps;
-  const double alpha = model.local_damping;
-  double& lost = s.losses[c].damping;
+/// Four stones on their way: a stone in each lane.
+struct Movers {
+  Vec3Of<Lanes> inertia, position, velocity, angular_momentum, spin, force, moment;
+  TurnOf<Lanes> turn;
+  Lanes mass, bound, travel, damping_loss;
+  Mat3Of<Lanes> rotation;
+};
 
-  const Vec3 unbalanced = s.force[c] + s.mass[c] * model.gravity;
-  lost += kick(unbalanced, Vec3::Constant(s.mass[c]), alpha, kick_time, s.velocity[c]);
-  s.position[c] += dt * s.velocity[c];
+/// One step of four stones; returns the lengths of way of their farthest points [m].
+Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
+  const double alpha = model.local_damping;
+  const Vec3Of<Lanes> gravity(model.gravity.x(), model.gravity.y(), model.gravity.z());
+  const Vec3Of<Lanes> masses = Vec3Of<Lanes>::Constant(m.mass);
+  m.damping_loss += kick<Lanes>(m.force + m.mass * gravity, masses, alpha, kick_time, m.velocity);
+  m.position += Lanes(dt) * m.velocity;
 
   // Damping of the moment acts in the principal frame; without it the angular momentum is kept as it is.
-  const Mat3& r = work.rotation[c];
-  const Vec3& moment = s.moment[c];
-  Vec3& angular_momentum = s.angular_momentum[c];
   if (alpha > 0) {
-    const Vec3 moment_body = r.transpose() * moment;
-    const Vec3 spin_body = (r.transpose() * angular_momentum).cwiseQuotient(s.inertia[c]);
-    Vec3 spin_after = spin_body;
-    lost += kick(moment_body, s.inertia[c], alpha, kick_time, spin_after);
-    angular_momentum += kick_time * (r * damped(moment_body, spin_body, alpha));
+    const Mat3Of<Lanes> r = matrix_of(m.turn);
+    const Vec3Of<Lanes> moment = r.transpose() * m.moment;
+    const Vec3Of<Lanes> body_momentum = r.transpose() * m.angular_momentum;
+    const Vec3Of<Lanes> spin = body_momentum.cwiseQuotient(m.inertia);
+    Vec3Of<Lanes> after = spin;
+    m.damping_loss += kick<Lanes>(moment, m.inertia, alpha, kick_time, after);
+    m.angular_momentum += Lanes(kick_time) * (r * damped_vector(moment, spin, alpha));
   } else {
-    angular_momentum += kick_time * moment;
+    m.angular_momentum += Lanes(kick_time) * m.moment;
   }
-  const Quat before = s.orientation[c];
-  rotate_freely(s.orientation[c], angular_momentum, s.inertia[c], dt);
-  work.rotation[c] = s.orientation[c].toRotationMatrix();
-  s.angular_velocity[c] = spin_of(work.rotation[c], s.inertia[c], angular_momentum);
+  const TurnOf<Lanes> before = m.turn;
+  const LaneMask even = m.inertia.x() == m.inertia.y() && m.inertia.y() == m.inertia.z();
+  if (any(!even)) m.turn = rotated_freely(before, m.angular_momentum, m.inertia, dt);
+  if (any(even)) {
+    const TurnOf<Lanes> turned = rotated_evenly(before, m.angular_momentum, m.inertia.x(), dt);
+    for (std::size_t k = 0; k < 4; ++k) m.turn[k] = select(even, turned[k], m.turn[k]);
+  }
+  m.rotation = matrix_of(m.turn);
+  m.spin = spin_of<Lanes>(m.rotation, m.inertia, m.angular_momentum);
 
-  work.travel[c] += dt * s.velocity[c].norm() + work.bound[c] * chord(before, s.orientation[c]);
+  const Lanes way = Lanes(dt) * sqrt(m.velocity.squaredNorm()) + m.bound * chord(before, m.turn);
+  m.travel += way;
+  return way;
+}
+
+/// Up to four stones from `first` on; the last one stands in for those that are missing.
+struct Quartet {
+  std::array<Index, Lanes::size> at;
+  int count;
+
+  Quartet(Index first, Index n) : count(static_cast<int>(std::min<Index>(Lanes::size, n - first))) {
+    for (Index k = 0; k < at.size(); ++k) at[k] = std::min(first + k, n - 1);
+  }
+  Vec3Of<Lanes> load(const std::vector<Vec3>& from) const {
+    if (count == Lanes::size) return load_vectors(&from[at[0]]);
+    Vec3Of<Lanes> v;
+    for (int a = 0; a < 3; ++a) v[a] = {from[at[0]][a], from[at[1]][a], from[at[2]][a], from[at[3]][a]};
+    return v;
+  }
+  void store(const Vec3Of<Lanes>& v, std::vector<Vec3>& to) const {
+    if (count == Lanes::size) return store_vectors(v, &to[at[0]]);
+    for (int k = 0; k < count; ++k) to[at[static_cast<Index>(k)]] = {v.x()[k], v.y()[k], v.z()[k]};
+  }
+  Lanes load(const std::vector<double>& from) const {
+    return {from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+  }
+  void store(Lanes v, std::vector<double>& to) const {
+    for (int k = 0; k < count; ++k) to[at[static_cast<Index>(k)]] = v[k];
+  }
+};
+
+/// Moves one quartet; returns the longest way of its stones, and their longest shift since the pairs were
+/// made.
+std::pair<double, double> move_quartet(const Model& model, State& state, Workspace& work, const Quartet& q,
+                                       double kick_time, double dt) {
+  Clumps& c = state.clumps;
+  Movers m;
+  m.inertia = q.load(c.inertia);
+  m.position = q.load(c.position);
+  m.velocity = q.load(c.velocity);
+  m.angular_momentum = q.load(c.angular_momentum);
+  m.force = q.load(c.force);
+  m.moment = q.load(c.moment);
+  m.mass = q.load(c.mass);
+  m.bound = q.load(work.bound);
+  m.travel = q.load(work.travel);
+  std::array<Lanes, 4> turn;  // x, y, z, w as Eigen stores them
+  for (Index k = 0; k < 4; ++k) turn[k] = Lanes::load(c.orientation[q.at[k]].coeffs().data());
+  transpose(turn[0], turn[1], turn[2], turn[3]);
+  m.turn = {turn[3], turn[0], turn[1], turn[2]};
+  for (Index k = 0; k < 4; ++k) m.damping_loss.pack[static_cast<int>(k)] = c.losses[q.at[k]].damping;
+
+  const Lanes ways = move(model, m, kick_time, dt);
+
+  q.store(m.position, c.position);
+  q.store(m.velocity, c.velocity);
+  q.store(m.angular_momentum, c.angular_momentum);
+  q.store(m.spin, c.angular_velocity);
+  q.store(m.travel, work.travel);
+  std::array<Row, 4> axes[3], position{m.position.x(), m.position.y(), m.position.z(), 0.0},
+      velocity{m.velocity.x(), m.velocity.y(), m.velocity.z(), m.mass},
+      spin{m.spin.x(), m.spin.y(), m.spin.z(), 0.0};
+  const auto to_rows = [](std::array<Row, 4>& r) { transpose(r[0], r[1], r[2], r[3]); };
+  for (int k = 0; k < 3; ++k) axes[k] = {m.rotation(0, k), m.rotation(1, k), m.rotation(2, k), 0.0};
+  for (auto* rows : {&axes[0], &axes[1], &axes[2], &position, &velocity, &spin}) to_rows(*rows);
+  turn = {m.turn[1], m.turn[2], m.turn[3], m.turn[0]};
+  to_rows(turn);
+  double way = 0, shift2 = 0;
+  const bool has_pairs = work.position_at_build.size() == c.position.size();
+  for (Index k = 0; k < static_cast<Index>(q.count); ++k) {
+    const Index at = q.at[k];
+    turn[k].store(c.orientation[at].coeffs().data());
+    c.losses[at].damping = m.damping_loss[static_cast<int>(k)];
+    work.motion[at] = {position[k], velocity[k], spin[k], {axes[0][k], axes[1][k], axes[2][k]}};
+    way = std::max(way, ways[static_cast<int>(k)]);
+    if (has_pairs) shift2 = std::max(shift2, (c.position[at] - work.position_at_build[at]).squaredNorm());
+  }
+  return {way, shift2};
 }
 
 void move_body(const Model& model, const BodyProperties& body, WallState& wall, double kick_time, double dt) {
@@ -66,7 +170,7 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
   for (int a = 0; a < 3; ++a)
     if (!body.free_shift[static_cast<Index>(a)]) unbalanced[a] = wall.velocity[a] = 0;
-  wall.damping_loss += kick(unbalanced, Vec3::Constant(body.mass), alpha, kick_time, wall.velocity);
+  wall.damping_loss += kick<double>(unbalanced, Vec3::Constant(body.mass), alpha, kick_time, wall.velocity);
   wall.applied_work += 0.5 * kick_time * wall.applied_force.dot(before + wall.velocity);
   wall.pose.position += dt * wall.velocity;
 
@@ -78,9 +182,9 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   const Vec3 moment_body = r.transpose() * moment;
   Vec3 spin_body = (r.transpose() * wall.angular_momentum).cwiseQuotient(body.inertia);
   const Vec3 damped_moment = damped(moment_body, spin_body, alpha);
-  wall.damping_loss += kick(moment_body, body.inertia, alpha, kick_time, spin_body);
+  wall.damping_loss += kick<double>(moment_body, body.inertia, alpha, kick_time, spin_body);
   wall.angular_momentum += kick_time * (r * damped_moment);
-  wall.angular_velocity = spin_of(r, body.inertia, wall.angular_momentum);
+  wall.angular_velocity = spin_of<double>(r, body.inertia, wall.angular_momentum);
   bool all_free = true;
   for (int a = 0; a < 3; ++a) {
     if (body.free_turn[static_cast<Index>(a)]) continue;
@@ -90,7 +194,7 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   if (all_free) {
     rotate_freely(wall.pose.orientation, wall.angular_momentum, body.inertia, dt);
     const Mat3 now = wall.pose.orientation.toRotationMatrix();
-    wall.angular_velocity = spin_of(now, body.inertia, wall.angular_momentum);
+    wall.angular_velocity = spin_of<double>(now, body.inertia, wall.angular_momentum);
   } else {
     // A blocked axis takes whatever moment it needs; the momentum is that of the turn that is left.
     wall.angular_momentum = r * (r.transpose() * wall.angular_velocity).cwiseProduct(body.inertia);
@@ -115,27 +219,28 @@ double reach_of(const Model& model, const State& state, const Workspace& work, s
 }  // namespace
 
 Vec3 damped(const Vec3& unbalanced, const Vec3& velocity, double alpha) {
-  return {damped_component(unbalanced.x(), velocity.x(), alpha),
-          damped_component(unbalanced.y(), velocity.y(), alpha),
-          damped_component(unbalanced.z(), velocity.z(), alpha)};
+  return damped_vector(unbalanced, velocity, alpha);
 }
 
 void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
-  double largest = 0;
-  const bool has_pairs = work.position_at_build.size() == state.clumps.position.size();
-#pragma omp parallel for schedule(static) reduction(max : largest) if (state.clumps.size() > 64)
-  for (int k = 0; k < state.clumps.size(); ++k) {
-    const Index c = static_cast<Index>(k);
-    move_clump(model, state, work, c, kick_time, dt);
-    if (has_pairs)
-      largest = std::max(largest, (state.clumps.position[c] - work.position_at_build[c]).squaredNorm());
+  double way = 0, shift2 = 0;
+  const Index n = state.clumps.id.size();
+  const int quartets = static_cast<int>((n + Lanes::size - 1) / Lanes::size);
+#pragma omp parallel for schedule(static) reduction(max : way, shift2) if (quartets > 16)
+  for (int k = 0; k < quartets; ++k) {
+    const Quartet q(static_cast<Index>(k) * Lanes::size, n);
+    const auto [farthest, shift] = move_quartet(model, state, work, q, kick_time, dt);
+    way = std::max(way, farthest);
+    shift2 = std::max(shift2, shift);
   }
-  work.largest_shift2 = largest;
+  work.way += way;
+  work.largest_shift2 = shift2;
 }
 
 void move_walls(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
+  double longest = 0;
   for (Index w = 0; w < state.walls.size(); ++w) {
     WallState& wall = state.walls[w];
     if (!wall.present) continue;
@@ -151,9 +256,12 @@ void move_walls(const Model& model, State& state, Workspace& work, double dt) {
       }
     }
     work.wall_rotation[w] = wall.pose.orientation.toRotationMatrix();
-    work.wall_travel[w] +=
-        dt * wall.velocity.norm() + reach_of(model, state, work, w) * chord(before, wall.pose.orientation);
+    const double way = dt * wall.velocity.norm() + reach_of(model, state, work, w) *
+                                                       chord(turn_of(before), turn_of(wall.pose.orientation));
+    work.wall_travel[w] += way;
+    longest = std::max(longest, way);
   }
+  work.wall_way += longest;
 }
 
 }  // namespace trackbed

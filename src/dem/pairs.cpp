@@ -147,15 +147,41 @@ void carry(const PairBlock& from, const PairGeometry& from_geometry, Index pair,
   const auto first = old.first, last = old.first + old.count;
   to.keys.insert(to.keys.end(), from.keys.begin() + first, from.keys.begin() + last);
   to.memory.insert(to.memory.end(), from.memory.begin() + first, from.memory.begin() + last);
-  const auto& columns = from_geometry.columns_of_pairs;
   if (with_search) {
     to_geometry.search.back() = from_geometry.search[pair];
-    to_geometry.columns_of_pairs.insert(to_geometry.columns_of_pairs.end(),
-                                        columns.begin() + first * PairGeometry::columns,
-                                        columns.begin() + last * PairGeometry::columns);
+    to_geometry.candidates.insert(to_geometry.candidates.end(), from_geometry.candidates.begin() + first,
+                                  from_geometry.candidates.begin() + last);
   } else {
-    to_geometry.columns_of_pairs.resize(to.keys.size() * PairGeometry::columns);
+    to_geometry.candidates.resize(to.keys.size());
   }
+}
+
+/// Where each pair lies, and which pairs each clump has.
+void index_pairs(const std::vector<std::pair<int, int>>& near, const State& state, Workspace& work) {
+  const Index n = static_cast<Index>(state.clumps.size());
+  work.pair_results.resize(near.size());
+  work.pair_contacts.assign(near.size(), 0);
+  work.own.assign(n, {});
+  work.first_pair_of_block.clear();
+  work.pair_places.clear();
+  for (const PairBlock& block : state.pair_blocks) {
+    work.first_pair_of_block.push_back(static_cast<int>(work.pair_places.size()));
+    for (Index k = 0; k < block.pairs.size(); ++k)
+      work.pair_places.push_back(
+          {static_cast<int>(work.first_pair_of_block.size()) - 1, static_cast<int>(k)});
+  }
+  work.first_pair.assign(n + 1, 0);
+  work.first_entry.assign(n + 1, 0);
+  for (const auto& [i, j] : near) {
+    ++work.first_pair[static_cast<Index>(i) + 1];
+    ++work.first_entry[static_cast<Index>(j) + 1];
+  }
+  std::partial_sum(work.first_pair.begin(), work.first_pair.end(), work.first_pair.begin());
+  std::partial_sum(work.first_entry.begin(), work.first_entry.end(), work.first_entry.begin());
+  work.entries.resize(near.size());
+  std::vector<int> next(work.first_entry.begin(), work.first_entry.end() - 1);
+  for (Index p = 0; p < near.size(); ++p)
+    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(p);
 }
 
 void rebuild_clump_pairs(State& state, Workspace& work) {
@@ -165,7 +191,8 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   const bool with_search = work.pair_geometry.size() == state.pair_blocks.size();
   OldPairs old_pairs(state.pair_blocks);
   for (const auto& [i, j] : near) {
-    if (blocks.empty() || blocks.back().pairs.size() == PairBlock::capacity) {
+    if (blocks.empty() ||
+        (blocks.back().pairs.size() >= PairBlock::full && blocks.back().pairs.back().i != i)) {
       blocks.emplace_back();
       geometry.emplace_back();
     }
@@ -181,23 +208,7 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   }
   state.pair_blocks = std::move(blocks);
   work.pair_geometry = std::move(geometry);
-  work.pair_results.assign(near.size(), {});
-
-  // Each clump's pairs in ascending order of the other stone: first those where it is j.
-  const Index n = static_cast<Index>(state.clumps.size());
-  work.first_entry.assign(n + 1, 0);
-  for (const auto& [i, j] : near) {
-    ++work.first_entry[static_cast<Index>(i) + 1];
-    ++work.first_entry[static_cast<Index>(j) + 1];
-  }
-  std::partial_sum(work.first_entry.begin(), work.first_entry.end(), work.first_entry.begin());
-  work.entries.resize(2 * near.size());
-  std::vector<int> next(work.first_entry.begin(), work.first_entry.end() - 1);
-  for (Index p = 0; p < near.size(); ++p)
-    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] =
-        static_cast<int>(2 * p + 1);
-  for (Index p = 0; p < near.size(); ++p)
-    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].first)]++)] = static_cast<int>(2 * p);
+  index_pairs(near, state, work);
 }
 
 void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
@@ -244,6 +255,14 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
     work.wall_entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(p);
 }
 
+StoneMotion motion_of(const Clumps& clumps, Index c) {
+  const Mat3 axes = clumps.orientation[c].toRotationMatrix();
+  return {row_of(clumps.position[c]),
+          row_of(clumps.velocity[c], clumps.mass[c]),
+          row_of(clumps.angular_velocity[c]),
+          {row_of(axes.col(0)), row_of(axes.col(1)), row_of(axes.col(2))}};
+}
+
 /// Skin and margin that suit the stones, where the user gave none; docs/numerics.md.
 void choose_search(const Model& model, const State& state, Workspace& work) {
   double sum = 0;
@@ -258,14 +277,14 @@ void choose_search(const Model& model, const State& state, Workspace& work) {
 
 void prepare(const Model& model, const State& state, Workspace& work) {
   const Index n = static_cast<Index>(state.clumps.size());
-  const bool is_new = work.rotation.size() != n || work.wall_rotation.size() != state.walls.size();
+  const bool is_new = work.motion.size() != n || work.wall_rotation.size() != state.walls.size();
   if (!is_new && work.pairs_are_valid) return;
-  work.rotation.resize(n);
+  work.motion.resize(n);
   work.bound.resize(n);
   work.travel.resize(n, 0.0);
   for (Index c = 0; c < n; ++c) {
     const Index shape = static_cast<Index>(state.clumps.shape[c]);
-    work.rotation[c] = state.clumps.orientation[c].toRotationMatrix();
+    work.motion[c] = motion_of(state.clumps, c);
     work.bound[c] = model.templates[shape].bounding_radius * state.clumps.scale[c];
   }
   work.wall_rotation.resize(state.walls.size());

@@ -1,28 +1,66 @@
-// Free rotation of a rigid body over one step.
+// Free rotation of a rigid body over one step, for one body (double) or four at once (Lanes).
 #pragma once
 
-#include <cmath>
+#include <array>
 
+#include "base/lanes.h"
 #include "base/vec.h"
 
 namespace trackbed {
 
 /// Angular velocity [rad/s], world axes, of a body with the given principal inertia [kg m^2].
-inline Vec3 spin_of(const Mat3& rotation, const Vec3& inertia, const Vec3& angular_momentum) {
-  return rotation * (rotation.transpose() * angular_momentum).cwiseQuotient(inertia);
+template <class Real>
+Vec3Of<Real> spin_of(const Mat3Of<Real>& rotation, const Vec3Of<Real>& inertia,
+                     const Vec3Of<Real>& angular_momentum) {
+  const Vec3Of<Real> body = rotation.transpose() * angular_momentum;
+  return rotation * Vec3Of<Real>(body.cwiseQuotient(inertia));
+}
+
+/// A unit quaternion, principal axes to world: w, x, y, z.
+template <class Real>
+using TurnOf = std::array<Real, 4>;
+
+template <class Real>
+Mat3Of<Real> matrix_of(const TurnOf<Real>& q) {
+  const auto& [w, x, y, z] = q;
+  const Real one = 1.0, x2 = x + x, y2 = y + y, z2 = z + z;
+  const Real wx = x2 * w, wy = y2 * w, wz = z2 * w, xx = x2 * x, xy = y2 * x, xz = z2 * x, yy = y2 * y,
+             yz = z2 * y, zz = z2 * z;
+  Mat3Of<Real> r;
+  r(0, 0) = one - (yy + zz);
+  r(0, 1) = xy - wz;
+  r(0, 2) = xz + wy;
+  r(1, 0) = xy + wz;
+  r(1, 1) = one - (xx + zz);
+  r(1, 2) = yz - wx;
+  r(2, 0) = xz - wy;
+  r(2, 1) = yz + wx;
+  r(2, 2) = one - (xx + yy);
+  return r;
+}
+
+template <class Real>
+void normalize(TurnOf<Real>& q) {
+  const Real shrink = Real(1.0) / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (Real& part : q) part *= shrink;
 }
 
 /// Turns a body by the angle 2 atan(t) about its own principal axis `axis` (0, 1, 2); `momentum` is the
 /// angular momentum seen from the body, which turns the other way. The quaternion grows by sqrt(1 + t^2).
-inline void turn_about_axis(Quat& q, Vec3& momentum, int axis, double t) {
+template <class Real>
+void turn_about_axis(TurnOf<Real>& q, Vec3Of<Real>& momentum, int axis, const Real& t) {
   const int j = (axis + 1) % 3, k = (axis + 2) % 3;
-  const double c = (1.0 - t * t) / (1.0 + t * t), s = 2.0 * t / (1.0 + t * t);
-  const double mj = momentum[j], mk = momentum[k];
+  const Real one = 1.0, shrink = one / (one + t * t);
+  const Real c = (one - t * t) * shrink, s = (t + t) * shrink;
+  const Real mj = momentum[j], mk = momentum[k];
   momentum[j] = c * mj + s * mk;
   momentum[k] = c * mk - s * mj;
-  Vec3 half = Vec3::Zero();
-  half[axis] = t;
-  q = q * Quat(1.0, half.x(), half.y(), half.z());
+  const auto part = [&](int a) -> Real& { return q[static_cast<std::size_t>(a) + 1]; };
+  const Real qw = q[0], qa = part(axis), qj = part(j), qk = part(k);
+  q[0] = qw - t * qa;
+  part(axis) = qa + t * qw;
+  part(j) = qj + t * qk;
+  part(k) = qk - t * qj;
 }
 
 /// Moves the orientation through a free rotation of length dt [s] with constant angular momentum (world
@@ -30,23 +68,49 @@ inline void turn_about_axis(Quat& q, Vec3& momentum, int axis, double t) {
 /// kinetic energy (Dullweber, Leimkuhler & McLachlan 1997), but for the tangent of the half angle, which is
 /// taken as half the angle: the map stays symplectic, and no sine is needed. The angular momentum is kept to
 /// rounding, the energy without drift.
-inline void rotate_freely(Quat& q, const Vec3& angular_momentum, const Vec3& inertia, double dt) {
-  if (inertia[0] == inertia[1] && inertia[1] == inertia[2]) {
-    const Vec3 half = (0.5 * dt / inertia[0]) * angular_momentum;
-    q = Quat(1.0, half.x(), half.y(), half.z()) * q;
-    q.normalize();
-    return;
-  }
-  Vec3 momentum = q.conjugate() * angular_momentum;
-  const auto turn = [&](int axis, double share) {
-    turn_about_axis(q, momentum, axis, 0.5 * share * dt * momentum[axis] / inertia[axis]);
+template <class Real>
+TurnOf<Real> rotated_freely(const TurnOf<Real>& before, const Vec3Of<Real>& angular_momentum,
+                            const Vec3Of<Real>& inertia, double dt) {
+  TurnOf<Real> q = before;
+  Vec3Of<Real> momentum = matrix_of(q).transpose() * angular_momentum;
+  const Vec3Of<Real> share(Real(0.5 * dt) / inertia.x(), Real(0.5 * dt) / inertia.y(),
+                           Real(0.5 * dt) / inertia.z());
+  const auto turn = [&](int axis, double part) {
+    turn_about_axis<Real>(q, momentum, axis, Real(part) * share[axis] * momentum[axis]);
   };
   turn(0, 0.5);
   turn(1, 0.5);
   turn(2, 1.0);
   turn(1, 0.5);
   turn(0, 0.5);
-  q.normalize();
+  normalize(q);
+  return q;
+}
+
+/// The same for a body whose principal moments are equal: one turn about the angular momentum.
+template <class Real>
+TurnOf<Real> rotated_evenly(const TurnOf<Real>& q, const Vec3Of<Real>& angular_momentum, const Real& inertia,
+                            double dt) {
+  const Vec3Of<Real> t = (Real(0.5 * dt) / inertia) * angular_momentum;
+  TurnOf<Real> out{
+      q[0] - t.x() * q[1] - t.y() * q[2] - t.z() * q[3], q[1] + t.x() * q[0] + t.y() * q[3] - t.z() * q[2],
+      q[2] + t.y() * q[0] + t.z() * q[1] - t.x() * q[3], q[3] + t.z() * q[0] + t.x() * q[2] - t.y() * q[1]};
+  normalize(out);
+  return out;
+}
+
+inline TurnOf<double> turn_of(const Quat& q) {
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+inline Quat quat_of(const TurnOf<double>& q) {
+  return {q[0], q[1], q[2], q[3]};
+}
+
+/// For one body, whatever its inertia.
+inline void rotate_freely(Quat& q, const Vec3& angular_momentum, const Vec3& inertia, double dt) {
+  const bool is_even = inertia[0] == inertia[1] && inertia[1] == inertia[2];
+  q = quat_of(is_even ? rotated_evenly(turn_of(q), angular_momentum, inertia[0], dt)
+                      : rotated_freely(turn_of(q), angular_momentum, inertia, dt));
 }
 
 }  // namespace trackbed

@@ -66,10 +66,11 @@ struct ClumpPair {
   int first, count;
 };
 
-/// Consecutive clump pairs that one thread works on at a time. Candidates out of touch have an untouched
-/// memory and mean nothing: which they are depends on when a search ran.
+/// Consecutive clump pairs that one thread works on at a time, all pairs of one i in the same block.
+/// Candidates out of touch have an untouched memory and mean nothing: which they are depends on when a search
+/// ran.
 struct PairBlock {
-  static constexpr int capacity = 16;
+  static constexpr int full = 24;  // no further clump's pairs are added to as many
   std::vector<ClumpPair> pairs;
   std::vector<PebblePair> keys;
   std::vector<ContactMemory> memory;

@@ -116,14 +116,18 @@ StableStep kinematic_step(const Model& model, const State& state, const Workspac
 DiagonalStiffness stiffness_of(const Model& model, const State& state, const Workspace& work, int clump) {
   DiagonalStiffness k;
   const Index c = static_cast<Index>(clump);
-  const Mat3& axes = work.rotation[c];
-  for (int e = work.first_entry[c]; e < work.first_entry[c + 1]; ++e) {
-    const int entry = work.entries[static_cast<Index>(e)], pair = entry / 2;
-    const PairBlock& block = state.pair_blocks[static_cast<Index>(pair / PairBlock::capacity)];
-    const ClumpPair& p = block.pairs[static_cast<Index>(pair % PairBlock::capacity)];
-    visit_pair(model, state, block, p,
-               [&](const Touching& t) { add_contact(t, entry % 2 ? t.lever_2 : t.lever_1, axes, k); });
-  }
+  const Mat3 axes = work.motion[c].rotation();
+  const auto add_pair = [&](Index pair, bool is_second) {
+    if (work.pair_contacts[pair] == 0) return;
+    const PairPlace place = work.pair_places[pair];
+    const PairBlock& block = state.pair_blocks[static_cast<Index>(place.block)];
+    visit_pair(model, state, block, block.pairs[static_cast<Index>(place.index)],
+               [&](const Touching& t) { add_contact(t, is_second ? t.lever_2 : t.lever_1, axes, k); });
+  };
+  for (int e = work.first_entry[c]; e < work.first_entry[c + 1]; ++e)
+    add_pair(static_cast<Index>(work.entries[static_cast<Index>(e)]), true);
+  for (int pair = work.first_pair[c]; pair < work.first_pair[c + 1]; ++pair)
+    add_pair(static_cast<Index>(pair), false);
   for (int e = work.first_wall_entry[c]; e < work.first_wall_entry[c + 1]; ++e) {
     const int pair = work.wall_entries[static_cast<Index>(e)];
     const WallBlock& block = state.wall_blocks[static_cast<Index>(pair / WallBlock::capacity)];

@@ -1,6 +1,7 @@
 // Level two of the search for a stone and a wall: the stone's tree is walked against the wall's.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "dem/pair_motion.h"
@@ -33,12 +34,20 @@ bool must_search(const State& state, const Workspace& work, const WallBlock& blo
     if (travel <= search.due) continue;
     const double left = search.range - motion_since(search, stone_seen_from_wall(state, p),
                                                     work.bound[static_cast<Index>(p.clump)]);
-    if (left > nearly_used_up * work.skin)
+    if (left > nearly_used_up * search.range)
       search.due = travel + left;
     else
       must = true;
   }
   return must;
+}
+
+/// Leaves the block alone until the fastest stone and the fastest wall may have used up what is left.
+void rest(const Workspace& work, const WallBlock& block, WallGeometry& geometry) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Index k = 0; k < block.pairs.size(); ++k)
+    least = std::min(least, geometry.search[k].due - travel_of(work, block.pairs[k]));
+  geometry.quiet_until = work.way + work.wall_way + least;
 }
 
 /// New lists of a block while it is searched.
@@ -117,7 +126,11 @@ void append_candidates(const Model& model, const State& state, double skin, cons
 void refresh(const Model& model, const State& state, const Workspace& work, WallBlock& block,
              WallGeometry& geometry) {
   // If one pair needs a new list, the whole small block gets one.
-  if (!must_search(state, work, block, geometry)) return;
+  if (work.way + work.wall_way < geometry.quiet_until) return;
+  if (!must_search(state, work, block, geometry)) {
+    rest(work, block, geometry);
+    return;
+  }
   thread_local Lists lists;
   lists.clear();
   for (Index k = 0; k < block.pairs.size(); ++k) {
@@ -133,6 +146,7 @@ void refresh(const Model& model, const State& state, const Workspace& work, Wall
   block.memory = lists.memory;
   geometry.candidates = lists.candidates;
   geometry.facets = lists.facets;
+  rest(work, block, geometry);
 }
 
 }  // namespace trackbed

@@ -2,8 +2,10 @@
 // results of the step in hand. An empty Workspace is always valid.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "base/lanes.h"
 #include "base/vec.h"
 #include "dem/model.h"
 #include "dem/state.h"
@@ -18,43 +20,74 @@ struct PairSearch {
   double due = -1;               // sum of both bodies' travel at which their motion must be measured [m]
 };
 
-/// Candidate geometry of a PairBlock: for each pair of n candidates eight columns of n numbers, namely place
-/// of pebble a in the frame of i (3), of pebble b in the frame of j (3), sum of radii, radius of a.
-struct PairGeometry {
-  static constexpr int columns = 8;
-  std::vector<PairSearch> search;
-  std::vector<double> columns_of_pairs;
+/// Two pebbles that may touch: one cache line.
+struct alignas(64) PairCandidate {
+  Vec3 a;           // centre in the frame of i [m]
+  double radius_a;  // [m]
+  Vec3 b;           // centre in the frame of j [m]
+  double reach;     // sum of the radii [m]
 };
 
-/// Candidate geometry of a WallBlock: the pebble, and the facets near it.
+/// Beside a PairBlock.
+struct PairGeometry {
+  std::vector<PairSearch> search;
+  std::vector<PairCandidate> candidates;
+  double quiet_until = -1;  // no pair is due before Workspace::way has come this far [m]
+};
+
+/// A pebble, and the facets near it.
 struct WallCandidate {
   Vec3 centre;                // in the frame of the clump [m]
   double radius;              // [m]
   int first_facet, n_facets;  // in WallGeometry::facets
 };
+
+/// Beside a WallBlock.
 struct WallGeometry {
   std::vector<PairSearch> search;
   std::vector<WallCandidate> candidates;
   std::vector<int> facets;
+  double quiet_until = -1;  // of Workspace::way + wall_way [m]
 };
 
-/// What the contacts of one clump pair did in this step; nothing until they are looked at. Moments about the
-/// centres of mass.
-struct PairResult {
-  Vec3 force = Vec3::Zero();     // on clump j, and the opposite on i [N]
-  Vec3 moment_i = Vec3::Zero();  // [N m]
-  Vec3 moment_j = Vec3::Zero();  // [N m]
-  Losses losses;                 // [J]
-  int contacts = 0;              // touching
+/// A stone as its contacts see it: rows of four numbers.
+struct alignas(64) StoneMotion {
+  Row position;             // and 0
+  Row velocity;             // and the mass
+  Row spin;                 // and 0
+  std::array<Row, 3> axes;  // columns of the rotation matrix, body axes to world, and 0
+
+  Mat3 rotation() const {
+    Mat3 r;
+    for (int k = 0; k < 3; ++k) r.col(k) = xyz(axes[static_cast<std::size_t>(k)]);
+    return r;
+  }
 };
 
-/// The same for a clump and a wall.
+/// What a clump pair gives to its clump j.
+struct alignas(64) PairResult {
+  Row force;   // on j [N]
+  Row moment;  // about the centre of mass of j [N m]
+};
+
+/// What all pairs of which a clump is i take from it: it receives the opposite.
+struct alignas(32) OwnSum {
+  Row force = 0.0;     // [N], and the friction loss [J]
+  Row moment = 0.0;    // about its centre of mass [N m], and the rolling loss [J]
+  double dashpot = 0;  // loss [J]
+};
+
+/// What the contacts of a clump with a wall do.
 struct WallResult {
   Vec3 force = Vec3::Zero();         // on the wall [N]
   Vec3 moment_clump = Vec3::Zero();  // on the clump about its centre of mass [N m]
   Vec3 moment_wall = Vec3::Zero();   // on the wall about its frame's origin [N m]
   Losses losses;
-  int contacts = 0;
+};
+
+/// Where a pair lies.
+struct PairPlace {
+  int block, index;
 };
 
 /// Seconds spent since the start, for the profile.
@@ -64,7 +97,7 @@ struct Profile {
 
 struct Workspace {
   // Of each clump.
-  std::vector<Mat3> rotation;           // body axes to world
+  std::vector<StoneMotion> motion;
   std::vector<double> bound;            // bounding radius [m]
   std::vector<double> travel;           // length of way of its farthest point since the start [m]
   std::vector<Vec3> position_at_build;  // when the pairs were made [m]
@@ -76,17 +109,25 @@ struct Workspace {
   double skin = 0, margin = 0;   // [m]
   bool pairs_are_valid = false;  // false: make all pairs anew before the next forces
   double largest_shift2 = 0;     // of a clump since the pairs were made, squared [m^2]
+  double way = 0;                // no stone's travel has grown by more since the start [m]
+  double wall_way = 0;           // nor has any wall's [m]
 
   std::vector<PairGeometry> pair_geometry;  // beside State::pair_blocks
   std::vector<WallGeometry> wall_geometry;  // beside State::wall_blocks
-  std::vector<PairResult> pair_results;     // by pair, through all blocks
-  std::vector<WallResult> wall_results;
 
-  // Pairs of each clump in ascending order of the other: entry = 2 x pair + (1 when the clump is j).
-  std::vector<int> first_entry, entries;
+  // By pair, through all blocks.
+  std::vector<PairResult> pair_results;  // means something only where there are contacts
+  std::vector<int> pair_contacts;        // touching
+  std::vector<WallResult> wall_results;
+  std::vector<OwnSum> own;  // of each clump
+
+  // Pairs of each clump: a range of pairs where it is i, a list of pairs where it is j, both ascending.
+  std::vector<int> first_pair, first_entry, entries;
   // Wall pairs of each clump in ascending order of the wall.
   std::vector<int> first_wall_entry, wall_entries;
   std::vector<int> first_pair_of_wall;  // range in the wall pairs
+  std::vector<PairPlace> pair_places;
+  std::vector<int> first_pair_of_block;
 
   int touching = 0;  // contacts in the last step
   Profile profile;

@@ -80,6 +80,7 @@ StageSummary run_stage(Simulation& sim, NamedStage& named, Recorder& recorder, S
   const int stones = sim.state.clumps.size();
   Stage& stage = *named.stage;
   stage.open(sim);
+  sim.number_by_place();
   recorder.open_stage(sim);
   progress.open(sim);
   const double energy = energy_of(sim.model, sim.state).total();

@@ -8,6 +8,7 @@
 
 #include "dem/inspect.h"
 #include "dem/model.h"
+#include "dem/numbering.h"
 #include "dem/state.h"
 #include "dem/step.h"
 #include "dem/workspace.h"
@@ -29,6 +30,12 @@ struct Simulation {
   int find_material(std::string_view name) const;
 
   void step() { trackbed::step(model, state, work); }
+
+  /// Before many steps with the same stones. What holds their indices must look them up again by their ids.
+  void number_by_place() {
+    trackbed::number_by_place(state);
+    changed();
+  }
 
   /// To be called after the state was changed by hand (stones added, removed, placed).
   void changed() { settle_contacts(model, state, work); }

@@ -90,7 +90,7 @@ TEST(energy, shear_force_goes_round_with_the_pair) {
   for (const double total : {0.5 * std::numbers::pi, 2 * std::numbers::pi}) {
     const Vec3 n0 = Vec3(0.3, -0.4, 0.8).normalized();
     for (const Vec3& about : {axis, n0}) {  // any axis, and pure twist
-      ContactMemory memory{1e-5, n0, n0.unitOrthogonal(), Vec3::Zero()};
+      ContactMemory memory{n0, 1e-5, n0.unitOrthogonal(), Vec3::Zero()};
       const Vec3 shear = memory.shear;
       Losses losses;
       constexpr int steps = 1000;

@@ -2,8 +2,6 @@
 // "linear" model, and its dashpots.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <string_view>
 
 #include "dem/contact.h"
@@ -17,56 +15,66 @@ struct Linear {
   static constexpr bool rolls = false;
 
   /// Force of a touching contact; updates its memory. `losses` gains what was dissipated.
-  static ContactForce respond(const ContactKinematics& k, const ContactProperties& p, ContactMemory& memory,
-                              Losses& losses) {
-    const double normal_force = p.kn * k.overlap;
-    const double opening = k.velocity.dot(k.normal);
-    const Vec3 sliding = (k.velocity - opening * k.normal) * k.dt;
-    const double share = active_share(k, memory, opening);
-    const Vec3 before = memory.touches()
-                            ? carry_along(memory.shear, memory.normal, k.normal, k.mean_twist * k.dt)
-                            : Vec3::Zero();
+  template <class Real>
+  static ContactForceOf<Real> respond(const ContactKinematicsOf<Real>& k, const ContactProperties& p,
+                                      ContactMemoryOf<Real>& memory, LossesOf<Real>& losses) {
+    const Real dt = k.dt, zero = 0.0;
+    const Real normal_force = Real(p.kn) * k.overlap;
+    const Real opening = k.velocity.dot(k.normal);
+    const Vec3Of<Real> sliding = (k.velocity - opening * k.normal) * dt;
+    const Real share = active_share(k, memory, opening);
+    const Vec3Of<Real> before =
+        select(memory.touches(), carry_along<Real>(memory.shear, memory.normal, k.normal, k.mean_twist * dt),
+               Vec3Of<Real>(Vec3Of<Real>::Zero()));
 
     // Elastic increment, cut to the Coulomb cone. What the force takes over the whole step and the spring
     // does not store is lost: the work of the cut part, and of the way before a contact closed.
-    Vec3 shear = before - p.ks * share * sliding;
-    const double limit = p.friction * normal_force;
-    const double trial2 = shear.squaredNorm();
-    const bool slips = trial2 > limit * limit;
-    if (slips) shear *= limit / std::sqrt(trial2);
-    if (p.ks > 0 && (slips || share < 1.0))
-      losses.friction -= 0.5 * (before + shear).dot(sliding + (shear - before) / p.ks);
+    Vec3Of<Real> shear = before - (Real(p.ks) * share) * sliding;
+    const Real limit = Real(p.friction) * normal_force;
+    const Real trial2 = shear.squaredNorm();
+    const auto slips = trial2 > limit * limit;
+    if (any(slips)) shear *= select(slips, limit / sqrt(trial2), Real(1.0));
+    const auto loses = slips || share < Real(1.0);
+    if (p.ks > 0 && any(loses)) {
+      const Vec3Of<Real> lost_way = sliding + Real(1.0 / p.ks) * (shear - before);
+      losses.friction -= select(loses, Real(0.5) * (before + shear).dot(lost_way), zero);
+    }
     memory.overlap = k.overlap;
     memory.normal = k.normal;
     memory.shear = shear;
 
-    ContactForce out{normal_force * k.normal + shear, Vec3::Zero()};
+    ContactForceOf<Real> out{normal_force * k.normal + shear, Vec3Of<Real>::Zero()};
     if (p.dashpot.normal > 0 || p.dashpot.shear > 0) add_dashpot(k, p, slips, normal_force, out, losses);
     return out;
   }
 
   /// Share of the step during which the contact touched: a contact that closed within it moved freely before.
-  static double active_share(const ContactKinematics& k, const ContactMemory& memory, double opening) {
-    if (memory.touches()) return 1.0;
-    const double approach = -opening * k.dt;
-    return approach > k.overlap ? k.overlap / approach : 1.0;
+  template <class Real>
+  static Real active_share(const ContactKinematicsOf<Real>& k, const ContactMemoryOf<Real>& memory,
+                           const Real& opening) {
+    const auto is_new = !memory.touches();
+    if (!any(is_new)) return 1.0;
+    const Real approach = -opening * Real(k.dt);
+    return select(is_new && approach > k.overlap, k.overlap / approach, Real(1.0));
   }
 
  private:
-  static void add_dashpot(const ContactKinematics& k, const ContactProperties& p, bool slips,
-                          double normal_force, ContactForce& out, Losses& losses) {
-    const double opening = k.velocity.dot(k.normal);
-    const Vec3 sliding = k.velocity - opening * k.normal;
+  template <class Real, class Truth>
+  static void add_dashpot(const ContactKinematicsOf<Real>& k, const ContactProperties& p, const Truth& slips,
+                          const Real& normal_force, ContactForceOf<Real>& out, LossesOf<Real>& losses) {
+    const Real opening = k.velocity.dot(k.normal);
+    const Vec3Of<Real> sliding = k.velocity - opening * k.normal;
     const bool no_tension =
         p.dashpot.mode == DashpotMode::no_tension || p.dashpot.mode == DashpotMode::no_tension_slip_cut;
     const bool slip_cut =
         p.dashpot.mode == DashpotMode::full_slip_cut || p.dashpot.mode == DashpotMode::no_tension_slip_cut;
 
-    double normal = -2.0 * p.dashpot.normal * std::sqrt(k.reduced_mass * p.kn) * opening;
-    if (no_tension) normal = std::max(normal, -normal_force);
-    Vec3 viscous = normal * k.normal;
-    if (!(slip_cut && slips)) viscous -= 2.0 * p.dashpot.shear * std::sqrt(k.reduced_mass * p.ks) * sliding;
-    losses.dashpot -= viscous.dot(k.velocity) * k.dt;
+    Real normal = Real(-2.0 * p.dashpot.normal) * sqrt(k.reduced_mass * Real(p.kn)) * opening;
+    if (no_tension) normal = larger(normal, -normal_force);
+    Real across = Real(2.0 * p.dashpot.shear) * sqrt(k.reduced_mass * Real(p.ks));
+    if (slip_cut) across = select(slips, Real(0.0), across);
+    const Vec3Of<Real> viscous = normal * k.normal - across * sliding;
+    losses.dashpot -= viscous.dot(k.velocity) * Real(k.dt);
     out.force += viscous;
   }
 };

@@ -11,32 +11,38 @@ struct LinearRolling {
   static constexpr LawKind kind = LawKind::linear_rolling;
   static constexpr bool rolls = true;
 
-  static ContactForce respond(const ContactKinematics& k, const ContactProperties& p, ContactMemory& memory,
-                              Losses& losses) {
-    const double opening = k.velocity.dot(k.normal);
-    const double share = Linear::active_share(k, memory, opening);
-    const Vec3 before = memory.touches()
-                            ? carry_along(memory.rolling, memory.normal, k.normal, k.mean_twist * k.dt)
-                            : Vec3::Zero();
-    ContactForce out = Linear::respond(k, p, memory, losses);
+  template <class Real>
+  static ContactForceOf<Real> respond(const ContactKinematicsOf<Real>& k, const ContactProperties& p,
+                                      ContactMemoryOf<Real>& memory, LossesOf<Real>& losses) {
+    const Real dt = k.dt, zero = 0.0;
+    const Real opening = k.velocity.dot(k.normal);
+    const Real share = Linear::active_share(k, memory, opening);
+    const Vec3Of<Real> before = select(
+        memory.touches(), carry_along<Real>(memory.rolling, memory.normal, k.normal, k.mean_twist * dt),
+        Vec3Of<Real>(Vec3Of<Real>::Zero()));
+    ContactForceOf<Real> out = Linear::respond(k, p, memory, losses);
 
-    const double stiffness = rolling_stiffness(p, k.radius);
-    const Vec3 bend = (k.spin - k.spin.dot(k.normal) * k.normal) * k.dt;
-    Vec3 moment = before - stiffness * share * bend;
-    const double limit = p.rolling_friction * k.radius * p.kn * k.overlap;
-    const double trial2 = moment.squaredNorm();
-    const bool slips = trial2 > limit * limit;
-    if (slips) moment *= limit / std::sqrt(trial2);
-    if (stiffness > 0 && (slips || share < 1.0))
-      losses.rolling -= 0.5 * (before + moment).dot(bend + (moment - before) / stiffness);
+    const Real stiffness = rolling_stiffness(p, k.radius);
+    const Vec3Of<Real> bend = (k.spin - k.spin.dot(k.normal) * k.normal) * dt;
+    Vec3Of<Real> moment = before - (stiffness * share) * bend;
+    const Real limit = Real(p.rolling_friction * p.kn) * k.radius * k.overlap;
+    const Real trial2 = moment.squaredNorm();
+    const auto slips = trial2 > limit * limit;
+    if (any(slips)) moment *= select(slips, limit / sqrt(trial2), Real(1.0));
+    const auto loses = slips || share < Real(1.0);
+    if (p.ks > 0 && any(loses)) {
+      const Vec3Of<Real> lost_bend = bend + (Real(1.0) / stiffness) * (moment - before);
+      losses.rolling -= select(loses, Real(0.5) * (before + moment).dot(lost_bend), zero);
+    }
     memory.rolling = moment;
     out.moment += moment;
     return out;
   }
 
   /// k_r = k_s R^2 [N m/rad].
-  static double rolling_stiffness(const ContactProperties& p, double radius) {
-    return p.ks * radius * radius;
+  template <class Real>
+  static Real rolling_stiffness(const ContactProperties& p, const Real& radius) {
+    return Real(p.ks) * radius * radius;
   }
 };
 
