@@ -44,6 +44,8 @@ int dispatch(int argc, char** argv) {
 void wait_politely(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   ::setenv("GOMP_SPINCOUNT", "20000", 1);
+  // Large pages, where the system leaves the choice to the program: a bed is tens of megabytes.
+  ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
   ::execv("/proc/self/exe", argv);  // returns only when it fails; then all goes on, with the longer wait
 }
 

@@ -12,17 +12,10 @@ namespace {
 
 using Index = std::size_t;
 
-struct Found {
-  PebblePair key;
-  PairCandidate candidate;
-};
-
 /// Per-thread memory of a search, kept from call to call so that a step allocates nothing.
 struct Scratch {
-  std::vector<Found> found;
+  std::vector<PebblePair> found;
   std::vector<std::pair<int, int>> stack;
-  std::vector<PairCandidate> candidates;
-  std::vector<PebblePair> keys;
   std::vector<ContactMemory> memory;
 };
 
@@ -52,14 +45,11 @@ void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj
     if (na.is_leaf() && nb.is_leaf()) {
       for (int l = nb.first; l < nb.first + nb.count; ++l) {
         const Pebble& pb = tj.pebbles[static_cast<Index>(l)];
-        const Vec3 local_b = sj * pb.centre;
-        const Vec3 xb = pose.offset + turn * local_b;
+        const Vec3 xb = pose.offset + turn * (sj * pb.centre);
         for (int k = na.first; k < na.first + na.count; ++k) {
           const Pebble& pa = ti.pebbles[static_cast<Index>(k)];
           const double reach = si * pa.radius + sj * pb.radius + skin;
-          const Vec3 xa = si * pa.centre;
-          if ((xb - xa).squaredNorm() <= reach * reach)
-            s.found.push_back({{k, l}, {xa, si * pa.radius, local_b, si * pa.radius + sj * pb.radius}});
+          if ((xb - si * pa.centre).squaredNorm() <= reach * reach) s.found.push_back({k, l});
         }
       }
     } else if (nb.is_leaf() || (!na.is_leaf() && si * na.bound.radius >= sj * nb.bound.radius)) {
@@ -73,39 +63,25 @@ void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj
 }
 
 /// Adds the candidates that touched in the last step, however far they are now: their contacts have yet to be
-/// ended, and their energy booked. Sorts all by key.
-void keep_touching(const PairBlock& block, const ClumpPair& p, const Model& model, const Clumps& c,
-                   Scratch& s) {
-  const Index i = static_cast<Index>(p.i), j = static_cast<Index>(p.j);
-  for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k) {
-    if (!block.memory[k].touches()) continue;
-    const PebblePair key = block.keys[k];
-    const Pebble& a = model.templates[static_cast<Index>(c.shape[i])].pebbles[static_cast<Index>(key.a)];
-    const Pebble& b = model.templates[static_cast<Index>(c.shape[j])].pebbles[static_cast<Index>(key.b)];
-    const double radius_a = c.scale[i] * a.radius, radius_b = c.scale[j] * b.radius;
-    s.found.push_back({key, {c.scale[i] * a.centre, radius_a, c.scale[j] * b.centre, radius_a + radius_b}});
-  }
-  std::sort(s.found.begin(), s.found.end(),
-            [](const Found& x, const Found& y) { return is_before(x.key, y.key); });
-  const auto same = [](const Found& x, const Found& y) { return x.key.a == y.key.a && x.key.b == y.key.b; };
+/// ended, and their energy booked. Sorts all.
+void keep_touching(const PairBlock& block, const ClumpPair& p, Scratch& s) {
+  for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k)
+    if (block.memory[k].touches()) s.found.push_back(block.keys[k]);
+  std::sort(s.found.begin(), s.found.end(), is_before);
+  const auto same = [](const PebblePair& x, const PebblePair& y) { return x.a == y.a && x.b == y.b; };
   s.found.erase(std::unique(s.found.begin(), s.found.end(), same), s.found.end());
 }
 
 /// Puts the found candidates in the place of the pair's old ones; touching contacts keep their memory.
-void replace_candidates(Index pair, Scratch& s, PairBlock& block, PairGeometry& geometry) {
+void replace_candidates(Index pair, Scratch& s, PairBlock& block) {
   ClumpPair& p = block.pairs[pair];
   const Index n = s.found.size();
-  s.keys.resize(n);
   s.memory.assign(n, {});
-  s.candidates.resize(n);
   Index old = static_cast<Index>(p.first);
   const Index old_end = old + static_cast<Index>(p.count);
   for (Index k = 0; k < n; ++k) {
-    const Found& f = s.found[k];
-    s.keys[k] = f.key;
-    while (old < old_end && is_before(block.keys[old], f.key)) ++old;
-    if (old < old_end && !is_before(f.key, block.keys[old])) s.memory[k] = block.memory[old];
-    s.candidates[k] = f.candidate;
+    while (old < old_end && is_before(block.keys[old], s.found[k])) ++old;
+    if (old < old_end && !is_before(s.found[k], block.keys[old])) s.memory[k] = block.memory[old];
   }
   const auto splice = [&](auto& into, const auto& from) {
     const auto first = into.begin() + p.first;
@@ -116,9 +92,8 @@ void replace_candidates(Index pair, Scratch& s, PairBlock& block, PairGeometry& 
     else
       into.erase(first + common, first + p.count);
   };
-  splice(block.keys, s.keys);
+  splice(block.keys, s.found);
   splice(block.memory, s.memory);
-  splice(geometry.candidates, s.candidates);
   const int more = static_cast<int>(n) - p.count;
   p.count = static_cast<int>(n);
   for (Index later = pair + 1; later < block.pairs.size(); ++later) block.pairs[later].first += more;
@@ -162,8 +137,8 @@ void search_pair(const Model& model, const State& state, const Workspace& work, 
     find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
                     model.templates[static_cast<Index>(c.shape[j])], c.scale[j], now, skin, scratch());
   if (apart <= skin || pair.count > 0) {
-    keep_touching(due.block, pair, model, c, scratch());
-    replace_candidates(due.pair, scratch(), due.block, due.geometry);
+    keep_touching(due.block, pair, scratch());
+    replace_candidates(due.pair, scratch(), due.block);
   }
   // Stones that are far apart touch no sooner than when they have come nearer by that much.
   const double range = std::max(apart, skin);

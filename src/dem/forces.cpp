@@ -12,125 +12,179 @@ namespace {
 
 using Index = std::size_t;
 
-Row rotated(const std::array<Row, 3>& axes, const Vec3& v) {
-  return axes[0] * v.x() + axes[1] * v.y() + axes[2] * v.z();
-}
-
-PairFrame frame_of(const StoneMotion& i, const StoneMotion& j, const ContactProperties& p) {
-  PairFrame f;
-  f.shift = j.position - i.position;
+void frame_pair(const StoneMotion& i, const StoneMotion& j, const ContactProperties& p, PairFrame& f) {
+  Row shift = j.position - i.position;
+  shift.pack[3] = 0;
+  f.shift = shift;
   f.spin = j.spin - i.spin;
   f.mean_spin = Lanes(0.5) * (i.spin + j.spin);
-  f.velocity = j.velocity - i.velocity - cross(j.spin, f.shift);
-  f.properties = &p;
+  Row velocity = j.velocity - i.velocity - cross(j.spin, shift);
   if (p.dashpot.normal > 0 || p.dashpot.shear > 0) {
     const double mi = i.velocity[3], mj = j.velocity[3];
-    f.velocity.pack[3] = mi * mj / (mi + mj);
+    velocity.pack[3] = mi * mj / (mi + mj);
   }
-  return f;
+  f.velocity = velocity;
+  f.properties = &p;
 }
 
 /// Motion of a contact that opens, at the place where its pebbles are nearest.
-ContactKinematics opening_of(const PairFrame& f, const PairCandidate& c, const Touch& t, double dt) {
+ContactKinematics opening_of(const PairFrame& f, const Touch& t, double dt) {
   const Vec3 between = xyz(t.between);
-  const double distance = between.norm();
-  const Vec3 lever = xyz(t.centre) + (c.radius_a - 0.5 * (c.reach - distance)) / distance * between;
+  const double distance = between.norm(), reach = t.between[3], radius_1 = t.centre[3];
+  const Vec3 lever = xyz(t.centre) + (radius_1 - 0.5 * (reach - distance)) / distance * between;
   ContactKinematics k;
   k.spin = xyz(f.spin);
   k.velocity = xyz(f.velocity) + k.spin.cross(lever);
-  k.radius = c.radius_a * (c.reach - c.radius_a) / c.reach;
+  k.radius = radius_1 * (reach - radius_1) / reach;
   k.dt = dt;
   return k;
 }
 
-/// Adds the touching candidates of a pair to `touches`, and ends the contacts that have opened.
-void find_touches(const ClumpPair& pair, const StoneMotion& i, const StoneMotion& j,
-                  const PairGeometry& geometry, double dt, PairBlock& block, Touches& s, Losses& losses) {
+/// A stone of a pair: its motion, and its pebbles at scale 1.
+struct Stone {
+  const StoneMotion& motion;
+  const Pebble* pebbles;
+
+  /// Centre of a pebble from the stone's, world axes, and its radius.
+  Row place(std::int32_t pebble) const {
+    const Pebble& p = pebbles[pebble];
+    const double scale = motion.position[3];
+    const Vec3 centre = scale * p.centre;
+    Row out = motion.axes[0] * centre.x() + motion.axes[1] * centre.y() + motion.axes[2] * centre.z();
+    out.pack[3] = scale * p.radius;
+    return out;
+  }
+};
+
+/// Adds the touching candidates of a pair to `s`, and ends the contacts that have opened.
+void find_touches(const ClumpPair& pair, const Stone& i, const Stone& j, double dt, PairBlock& block,
+                  Touches& s, Losses& losses) {
   const PairFrame& f = s.frames.back();
+  const int frame = static_cast<int>(s.frames.size()) - 1;
+  s.touches.reserve(static_cast<Index>(pair.count));
   for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
-    const PairCandidate& c = geometry.candidates[k];
-    const Row centre = rotated(i.axes, c.a);
-    Row between = f.shift + rotated(j.axes, c.b) - centre;
+    const PebblePair key = block.keys[k];
+    const Row centre = i.place(key.a), other = j.place(key.b);
+    const double reach = centre[3] + other[3];
+    Row between = f.shift + other - centre;
     const Row squares = between * between;
-    Touch t;
+    const double distance2 = squares[0] + squares[1] + squares[2];
+    between.pack[3] = reach;
+    Touch& t = s.touches.add();
     t.between = between;
     t.centre = centre;
-    ContactMemory& memory = block.memory[k];
-    if (squares[0] + squares[1] + squares[2] < c.reach * c.reach) {
-      t.between.pack[3] = c.reach;
-      t.centre.pack[3] = c.radius_a;
-      t.frame = static_cast<int>(s.frames.size()) - 1;
-      t.memory = &memory;
-      s.touches.push_back(t);
-    } else if (memory.touches()) {
-      open_contact(*f.properties, opening_of(f, c, t, dt), memory, losses);
-    }
+    t.frame = frame;
+    t.memory = &block.memory[k];
+    if (distance2 < reach * reach) continue;
+    if (t.memory->touches()) open_contact(*f.properties, opening_of(f, t, dt), *t.memory, losses);
+    s.touches.drop();
   }
 }
 
-/// Sums the touches of pair `p`, which begin at `next`, for its two stones.
-void sum_touches(const Touches& s, int frame, Index& next, PairResult& result, int& contacts, OwnSum& own) {
+/// Sums the touches of a pair, which begin at `next`.
+TouchSum sum_touches(const Touches& s, int frame, Index& next) {
   TouchSum sum;
-  const Index first = next;
   for (; next < s.touches.size() && s.touches[next].frame == frame; ++next) sum += s.touches[next];
-  contacts = static_cast<int>(next - first);
-  if (contacts == 0) return;
-  result.force = sum.force;
-  result.moment = sum.moment - cross(s.frames[static_cast<Index>(frame)].shift, sum.force);
-  own.force += sum.force;
-  own.moment += sum.moment;
-  own.dashpot += sum.dashpot;
+  return sum;
+}
+
+/// What clump j receives.
+PairResult result_for_second(const TouchSum& sum, const PairFrame& frame) {
+  PairResult r{sum.force, sum.moment - cross(frame.shift, sum.force)};
+  r.force.pack[3] = 0;
+  r.moment.pack[3] = 0;
+  return r;
+}
+
+/// Asks for the memory of a block that comes soon: it lies where no pattern leads the processor.
+void prefetch(const PairBlock& block) {
+  constexpr Index line = 64;
+  const auto lines = [](const auto& values) {
+    const char* at = reinterpret_cast<const char*>(values.data());
+    for (Index k = 0; k < values.size() * sizeof(values[0]); k += line) __builtin_prefetch(at + k, 1);
+  };
+  lines(block.pairs);
+  lines(block.keys);
+  lines(block.memory);
+}
+
+/// Gives the touches of a block, which have responded, to its stones.
+void hand_out(const PairBlock& block, Index first_pair, const Touches& s, Workspace& work) {
+  Index next = 0;
+  int frame = 0;
+  for (Index k = 0; k < block.pairs.size(); ++k) {
+    const ClumpPair& pair = block.pairs[k];
+    const int result = work.result_of_pair[first_pair + k];
+    if (pair.count == 0) {
+      if (result >= 0) work.pair_results[static_cast<Index>(result)] = {0.0, 0.0};
+      continue;
+    }
+    const TouchSum sum = sum_touches(s, frame, next);
+    const PairResult second = result_for_second(sum, s.frames[static_cast<Index>(frame++)]);
+    PatchSum& i = work.patch_sums[static_cast<Index>(pair.i)];
+    i.force -= sum.force;
+    i.moment -= sum.moment;
+    work.dashpot_losses[static_cast<Index>(pair.i)] += sum.dashpot;
+    if (result >= 0) {
+      work.pair_results[static_cast<Index>(result)] = second;
+    } else {
+      PatchSum& j = work.patch_sums[static_cast<Index>(pair.j)];
+      j.force += second.force;
+      j.moment += second.moment;
+    }
+  }
 }
 
 int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
   thread_local Touches s;
   PairBlock& block = state.pair_blocks[b];
-  PairGeometry& geometry = work.pair_geometry[b];
-  refresh(model, state, work, block, geometry);
+  if (b + 1 < state.pair_blocks.size()) prefetch(state.pair_blocks[b + 1]);
+  refresh(model, state, work, block, work.pair_geometry[b]);
   const Clumps& c = state.clumps;
   s.clear();
-  int last = -1;
+  s.frames.reserve(block.pairs.size());
   for (const ClumpPair& pair : block.pairs) {
-    if (pair.i != last) work.own[static_cast<Index>(pair.i)] = {};
-    last = pair.i;
     if (pair.count == 0) continue;
     const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
-    const StoneMotion &mi = work.motion[i], &mj = work.motion[j];
-    s.frames.push_back(frame_of(mi, mj, model.pairs(c.material[i], c.material[j])));
+    const Stone one{work.motion[i], model.templates[static_cast<Index>(c.shape[i])].pebbles.data()};
+    const Stone two{work.motion[j], model.templates[static_cast<Index>(c.shape[j])].pebbles.data()};
+    frame_pair(one.motion, two.motion, model.pairs(c.material[i], c.material[j]), s.frames.add());
     Losses losses;
-    find_touches(pair, mi, mj, geometry, dt, block, s, losses);
-    OwnSum& own = work.own[i];
-    own.force.pack[3] += losses.friction;
-    own.moment.pack[3] += losses.rolling;
+    find_touches(pair, one, two, dt, block, s, losses);
+    PatchSum& sum = work.patch_sums[i];
+    sum.force.pack[3] -= losses.friction;
+    sum.moment.pack[3] -= losses.rolling;
   }
   respond<TouchKind::between_pebbles>(s, dt);
-
-  Index next = 0;
-  int frame = 0;
-  for (Index k = 0; k < block.pairs.size(); ++k) {
-    const Index p = static_cast<Index>(work.first_pair_of_block[b]) + k;
-    work.pair_contacts[p] = 0;
-    if (block.pairs[k].count == 0) continue;
-    sum_touches(s, frame++, next, work.pair_results[p], work.pair_contacts[p],
-                work.own[static_cast<Index>(block.pairs[k].i)]);
-  }
+  hand_out(block, static_cast<Index>(work.first_pair_of_block[b]), s, work);
   return static_cast<int>(s.touches.size());
 }
 
-void gather_clump(State& state, const Workspace& work, Index c) {
-  Row force = 0.0, moment = 0.0;
-  for (int e = work.first_entry[c]; e < work.first_entry[c + 1]; ++e) {
-    const Index pair = static_cast<Index>(work.entries[static_cast<Index>(e)]);
-    if (work.pair_contacts[pair] == 0) continue;
-    force += work.pair_results[pair].force;
-    moment += work.pair_results[pair].moment;
+int patch_forces(const Model& model, State& state, Workspace& work, Index patch, double dt) {
+  const Index size = static_cast<Index>(work.patch_size);
+  const Index last = std::min((patch + 1) * size, work.patch_sums.size());
+  for (Index c = patch * size; c < last; ++c) {
+    work.patch_sums[c] = {};
+    work.dashpot_losses[c] = 0;
   }
-  const OwnSum& own = work.own[c];
+  int touching = 0;
+  for (int b = work.first_block_of_patch[patch]; b < work.first_block_of_patch[patch + 1]; ++b)
+    touching += block_forces(model, state, work, static_cast<Index>(b), dt);
+  return touching;
+}
+
+void gather_clump(State& state, const Workspace& work, Index c) {
+  Row force = work.patch_sums[c].force, moment = work.patch_sums[c].moment;
   StoneLosses& losses = state.clumps.losses[c];
-  losses.friction += own.force[3];
-  losses.rolling += own.moment[3];
-  losses.dashpot += own.dashpot;
-  Vec3 f = xyz(force - own.force), m = xyz(moment - own.moment);
+  losses.friction -= force[3];
+  losses.rolling -= moment[3];
+  losses.dashpot += work.dashpot_losses[c];
+  for (int e = work.first_result[c]; e < work.first_result[c + 1]; ++e) {
+    const PairResult& r = work.pair_results[static_cast<Index>(work.results[static_cast<Index>(e)])];
+    force += r.force;
+    moment += r.moment;
+  }
+  Vec3 f = xyz(force), m = xyz(moment);
   for (int e = work.first_wall_entry[c]; e < work.first_wall_entry[c + 1]; ++e) {
     const WallResult& r = work.wall_results[static_cast<Index>(work.wall_entries[static_cast<Index>(e)])];
     f -= r.force;
@@ -161,13 +215,13 @@ void gather_wall(const Model& model, State& state, const Workspace& work, Index 
 }  // namespace
 
 void contact_forces(const Model& model, State& state, Workspace& work, double dt) {
-  const int n = static_cast<int>(state.pair_blocks.size());
+  const int n = static_cast<int>(work.first_block_of_patch.size()) - 1;
   const int n_all = n + static_cast<int>(state.wall_blocks.size());
   int touching = 0;
-#pragma omp parallel for schedule(dynamic, 4) reduction(+ : touching) if (n_all > 8)
-  for (int b = 0; b < n_all; ++b)
-    touching += b < n ? block_forces(model, state, work, static_cast<Index>(b), dt)
-                      : wall_block_forces(model, state, work, static_cast<Index>(b - n), dt);
+#pragma omp parallel for schedule(dynamic, 1) reduction(+ : touching) if (n_all > 8)
+  for (int k = 0; k < n_all; ++k)
+    touching += k < n ? patch_forces(model, state, work, static_cast<Index>(k), dt)
+                      : wall_block_forces(model, state, work, static_cast<Index>(k - n), dt);
   work.touching = touching;
 }
 

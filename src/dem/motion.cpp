@@ -115,10 +115,9 @@ struct Quartet {
   }
 };
 
-/// Moves one quartet; returns the longest way of its stones, and their longest shift since the pairs were
-/// made.
-std::pair<double, double> move_quartet(const Model& model, State& state, Workspace& work, const Quartet& q,
-                                       double kick_time, double dt) {
+/// Moves one quartet; returns the longest way of its stones [m].
+double move_quartet(const Model& model, State& state, Workspace& work, const Quartet& q, double kick_time,
+                    double dt) {
   Clumps& c = state.clumps;
   Movers m;
   m.inertia = q.load(c.inertia);
@@ -143,7 +142,7 @@ std::pair<double, double> move_quartet(const Model& model, State& state, Workspa
   q.store(m.angular_momentum, c.angular_momentum);
   q.store(m.spin, c.angular_velocity);
   q.store(m.travel, work.travel);
-  std::array<Row, 4> axes[3], position{m.position.x(), m.position.y(), m.position.z(), 0.0},
+  std::array<Row, 4> axes[3], position{m.position.x(), m.position.y(), m.position.z(), q.load(c.scale)},
       velocity{m.velocity.x(), m.velocity.y(), m.velocity.z(), m.mass},
       spin{m.spin.x(), m.spin.y(), m.spin.z(), 0.0};
   const auto to_rows = [](std::array<Row, 4>& r) { transpose(r[0], r[1], r[2], r[3]); };
@@ -151,17 +150,15 @@ std::pair<double, double> move_quartet(const Model& model, State& state, Workspa
   for (auto* rows : {&axes[0], &axes[1], &axes[2], &position, &velocity, &spin}) to_rows(*rows);
   turn = {m.turn[1], m.turn[2], m.turn[3], m.turn[0]};
   to_rows(turn);
-  double way = 0, shift2 = 0;
-  const bool has_pairs = work.position_at_build.size() == c.position.size();
+  double way = 0;
   for (Index k = 0; k < static_cast<Index>(q.count); ++k) {
     const Index at = q.at[k];
     turn[k].store(c.orientation[at].coeffs().data());
     c.losses[at].damping = m.damping_loss[static_cast<int>(k)];
     work.motion[at] = {position[k], velocity[k], spin[k], {axes[0][k], axes[1][k], axes[2][k]}};
     way = std::max(way, ways[static_cast<int>(k)]);
-    if (has_pairs) shift2 = std::max(shift2, (c.position[at] - work.position_at_build[at]).squaredNorm());
   }
-  return {way, shift2};
+  return way;
 }
 
 void move_body(const Model& model, const BodyProperties& body, WallState& wall, double kick_time, double dt) {
@@ -224,18 +221,14 @@ Vec3 damped(const Vec3& unbalanced, const Vec3& velocity, double alpha) {
 
 void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
-  double way = 0, shift2 = 0;
+  double way = 0;
   const Index n = state.clumps.id.size();
   const int quartets = static_cast<int>((n + Lanes::size - 1) / Lanes::size);
-#pragma omp parallel for schedule(static) reduction(max : way, shift2) if (quartets > 16)
-  for (int k = 0; k < quartets; ++k) {
-    const Quartet q(static_cast<Index>(k) * Lanes::size, n);
-    const auto [farthest, shift] = move_quartet(model, state, work, q, kick_time, dt);
-    way = std::max(way, farthest);
-    shift2 = std::max(shift2, shift);
-  }
+#pragma omp parallel for schedule(static) reduction(max : way) if (quartets > 16)
+  for (int k = 0; k < quartets; ++k)
+    way = std::max(way, move_quartet(model, state, work, Quartet(static_cast<Index>(k) * Lanes::size, n),
+                                     kick_time, dt));
   work.way += way;
-  work.largest_shift2 = shift2;
 }
 
 void move_walls(const Model& model, State& state, Workspace& work, double dt) {

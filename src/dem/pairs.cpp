@@ -139,60 +139,83 @@ class OldPairs {
 };
 
 /// Copies the candidates of one old clump pair behind those of a new one.
-void carry(const PairBlock& from, const PairGeometry& from_geometry, Index pair, bool with_search,
-           PairBlock& to, PairGeometry& to_geometry) {
+void carry(const PairBlock& from, Index pair, PairBlock& to) {
   const ClumpPair& old = from.pairs[pair];
-  ClumpPair& now = to.pairs.back();
-  now.count = old.count;
+  to.pairs.back().count = old.count;
   const auto first = old.first, last = old.first + old.count;
   to.keys.insert(to.keys.end(), from.keys.begin() + first, from.keys.begin() + last);
   to.memory.insert(to.memory.end(), from.memory.begin() + first, from.memory.begin() + last);
-  if (with_search) {
-    to_geometry.search.back() = from_geometry.search[pair];
-    to_geometry.candidates.insert(to_geometry.candidates.end(), from_geometry.candidates.begin() + first,
-                                  from_geometry.candidates.begin() + last);
-  } else {
-    to_geometry.candidates.resize(to.keys.size());
-  }
+}
+
+using Pairs = std::vector<std::pair<int, int>>;
+
+/// Lists of the pairs for which a clump is j: first[c] to first[c + 1] in `entries`.
+template <class Chosen>
+void list_by_second(const Pairs& pairs, Index n, Chosen&& chosen, std::vector<int>& first,
+                    std::vector<int>& entries) {
+  first.assign(n + 1, 0);
+  for (Index p = 0; p < pairs.size(); ++p)
+    if (chosen(p)) ++first[static_cast<Index>(pairs[p].second) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  entries.resize(static_cast<Index>(first.back()));
+  std::vector<int> next(first.begin(), first.end() - 1);
+  for (Index p = 0; p < pairs.size(); ++p)
+    if (chosen(p))
+      entries[static_cast<Index>(next[static_cast<Index>(pairs[p].second)]++)] = static_cast<int>(p);
 }
 
 /// Where each pair lies, and which pairs each clump has.
-void index_pairs(const std::vector<std::pair<int, int>>& near, const State& state, Workspace& work) {
+void index_pairs(const Pairs& near, const State& state, Workspace& work) {
   const Index n = static_cast<Index>(state.clumps.size());
-  work.pair_results.resize(near.size());
-  work.pair_contacts.assign(near.size(), 0);
-  work.own.assign(n, {});
   work.first_pair_of_block.clear();
+  work.first_block_of_patch.clear();
   work.pair_places.clear();
-  for (const PairBlock& block : state.pair_blocks) {
+  int patch = -1;
+  for (Index b = 0; b < state.pair_blocks.size(); ++b) {
+    const PairBlock& block = state.pair_blocks[b];
+    for (; patch < block.pairs.front().i / work.patch_size; ++patch)
+      work.first_block_of_patch.push_back(static_cast<int>(b));
     work.first_pair_of_block.push_back(static_cast<int>(work.pair_places.size()));
     for (Index k = 0; k < block.pairs.size(); ++k)
-      work.pair_places.push_back(
-          {static_cast<int>(work.first_pair_of_block.size()) - 1, static_cast<int>(k)});
+      work.pair_places.push_back({static_cast<int>(b), static_cast<int>(k)});
   }
+  const Index patches = (n + static_cast<Index>(work.patch_size) - 1) / static_cast<Index>(work.patch_size);
+  work.first_block_of_patch.resize(patches + 1, static_cast<int>(state.pair_blocks.size()));
+
   work.first_pair.assign(n + 1, 0);
-  work.first_entry.assign(n + 1, 0);
-  for (const auto& [i, j] : near) {
-    ++work.first_pair[static_cast<Index>(i) + 1];
-    ++work.first_entry[static_cast<Index>(j) + 1];
-  }
+  for (const auto& [i, j] : near) ++work.first_pair[static_cast<Index>(i) + 1];
   std::partial_sum(work.first_pair.begin(), work.first_pair.end(), work.first_pair.begin());
-  std::partial_sum(work.first_entry.begin(), work.first_entry.end(), work.first_entry.begin());
-  work.entries.resize(near.size());
-  std::vector<int> next(work.first_entry.begin(), work.first_entry.end() - 1);
+  list_by_second(
+      near, n, [](Index) { return true; }, work.first_entry, work.entries);
+
+  work.result_of_pair.assign(near.size(), -1);
+  int results = 0;
   for (Index p = 0; p < near.size(); ++p)
-    work.entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(p);
+    if (near[p].first / work.patch_size != near[p].second / work.patch_size)
+      work.result_of_pair[p] = results++;
+  list_by_second(
+      near, n, [&](Index p) { return work.result_of_pair[p] >= 0; }, work.first_result, work.results);
+  for (int& r : work.results) r = work.result_of_pair[static_cast<Index>(r)];
+  work.pair_results.resize(static_cast<Index>(results));
+  work.patch_sums.assign(n, {});
+  work.dashpot_losses.assign(n, 0.0);
 }
 
 void rebuild_clump_pairs(State& state, Workspace& work) {
-  const auto near = near_clumps(state.clumps, work);
+  const Pairs near = near_clumps(state.clumps, work);
   std::vector<PairBlock> blocks;
   std::vector<PairGeometry> geometry;
   const bool with_search = work.pair_geometry.size() == state.pair_blocks.size();
+  work.patch_size = std::clamp(state.clumps.size() / 24, 16, 512);
+  const auto begins_block = [&](int i) {
+    if (blocks.empty()) return true;
+    const int last = blocks.back().pairs.back().i;
+    return i / work.patch_size != last / work.patch_size ||
+           (i != last && blocks.back().pairs.size() >= PairBlock::full);
+  };
   OldPairs old_pairs(state.pair_blocks);
   for (const auto& [i, j] : near) {
-    if (blocks.empty() ||
-        (blocks.back().pairs.size() >= PairBlock::full && blocks.back().pairs.back().i != i)) {
+    if (begins_block(i)) {
       blocks.emplace_back();
       geometry.emplace_back();
     }
@@ -200,11 +223,8 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
     geometry.back().search.emplace_back();
     const auto found = old_pairs.find({i, j});
     if (!found) continue;
-    const auto [old_block, old_pair] = *found;
-    const PairBlock& old = state.pair_blocks[old_block];
-    static const PairGeometry none;
-    carry(old, with_search ? work.pair_geometry[old_block] : none, old_pair, with_search, blocks.back(),
-          geometry.back());
+    carry(state.pair_blocks[found->first], found->second, blocks.back());
+    if (with_search) geometry.back().search.back() = work.pair_geometry[found->first].search[found->second];
   }
   state.pair_blocks = std::move(blocks);
   work.pair_geometry = std::move(geometry);
@@ -257,7 +277,7 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
 
 StoneMotion motion_of(const Clumps& clumps, Index c) {
   const Mat3 axes = clumps.orientation[c].toRotationMatrix();
-  return {row_of(clumps.position[c]),
+  return {row_of(clumps.position[c], clumps.scale[c]),
           row_of(clumps.velocity[c], clumps.mass[c]),
           row_of(clumps.angular_velocity[c]),
           {row_of(axes.col(0)), row_of(axes.col(1)), row_of(axes.col(2))}};
@@ -294,13 +314,19 @@ void prepare(const Model& model, const State& state, Workspace& work) {
   work.pairs_are_valid = false;
 }
 
-bool pairs_are_due(const Model&, const State&, const Workspace& work) {
+bool pairs_are_due(const State& state, Workspace& work) {
   if (!work.pairs_are_valid) return true;
-  double wall_shift = 0;
+  if (work.way + work.wall_way < work.pairs_good_until) return false;
+  double shift2 = 0, wall_shift = 0;
+  for (Index c = 0; c < work.position_at_build.size(); ++c)
+    shift2 = std::max(shift2, (state.clumps.position[c] - work.position_at_build[c]).squaredNorm());
   for (Index w = 0; w < work.wall_travel.size(); ++w)
     wall_shift = std::max(wall_shift, work.wall_travel[w] - work.wall_travel_at_build[w]);
-  const double shift = std::sqrt(work.largest_shift2);
-  return 2.0 * shift > work.margin || shift + wall_shift > work.margin;
+  const double shift = std::sqrt(shift2);
+  const double left = work.margin - shift - std::max(shift, wall_shift);
+  work.pairs_good_until = work.way + work.wall_way + 0.5 * left;
+  // Rather than look again and again, the pairs are made anew when little is left.
+  return left < 0.1 * work.margin;
 }
 
 void rebuild_pairs(const Model& model, State& state, Workspace& work) {
@@ -310,7 +336,7 @@ void rebuild_pairs(const Model& model, State& state, Workspace& work) {
   rebuild_wall_pairs(model, state, work);
   work.position_at_build = state.clumps.position;
   work.wall_travel_at_build = work.wall_travel;
-  work.largest_shift2 = 0;
+  work.pairs_good_until = work.way + work.wall_way + 0.5 * work.margin;
   work.pairs_are_valid = true;
 }
 

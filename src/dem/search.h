@@ -14,7 +14,7 @@ namespace trackbed {
 void prepare(const Model& model, const State& state, Workspace& work);
 
 /// Whether a stone or wall has moved so far that a stone outside the pairs may touch.
-bool pairs_are_due(const Model& model, const State& state, const Workspace& work);
+bool pairs_are_due(const State& state, Workspace& work);
 
 /// Makes all pairs anew; the memory of contacts, and candidates that are still good, are carried over.
 void rebuild_pairs(const Model& model, State& state, Workspace& work);

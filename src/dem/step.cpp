@@ -53,7 +53,7 @@ void step(const Model& model, State& state, Workspace& work) {
   move_walls(model, state, work, dt);
   watch.add_to(work.profile.motion);
 
-  if (pairs_are_due(model, state, work)) rebuild_pairs(model, state, work);
+  if (pairs_are_due(state, work)) rebuild_pairs(model, state, work);
   watch.add_to(work.profile.search);
   contact_forces(model, state, work, dt);
   watch.add_to(work.profile.forces);

@@ -118,7 +118,6 @@ DiagonalStiffness stiffness_of(const Model& model, const State& state, const Wor
   const Index c = static_cast<Index>(clump);
   const Mat3 axes = work.motion[c].rotation();
   const auto add_pair = [&](Index pair, bool is_second) {
-    if (work.pair_contacts[pair] == 0) return;
     const PairPlace place = work.pair_places[pair];
     const PairBlock& block = state.pair_blocks[static_cast<Index>(place.block)];
     visit_pair(model, state, block, block.pairs[static_cast<Index>(place.index)],

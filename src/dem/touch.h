@@ -24,9 +24,9 @@ struct Touch {
   Row centre;   // of the pebble of body 1 from its centre of mass [m], and its radius [m]
   int frame;    // of its pair
   ContactMemory* memory;  //
-  Row force = 0.0;        // on body 2 [N], and the friction loss [J]
-  Row moment = 0.0;       // on body 2 about the centre of mass of body 1 [N m], and the rolling loss [J]
-  double dashpot = 0;     // loss [J]
+  Row force;              // on body 2 [N], and the friction loss [J]
+  Row moment;             // on body 2 about the centre of mass of body 1 [N m], and the rolling loss [J]
+  double dashpot;         // loss [J]
 };
 
 /// Sum of the responses of a pair's contacts.
@@ -41,10 +41,31 @@ struct TouchSum {
   }
 };
 
+/// A growing list that gives its elements uninitialized and keeps its memory.
+template <class T>
+class Pile {
+ public:
+  void clear() { size_ = 0; }
+  std::size_t size() const { return size_; }
+  T& operator[](std::size_t k) { return values_[k]; }
+  const T& operator[](std::size_t k) const { return values_[k]; }
+  const T& back() const { return values_[size_ - 1]; }
+  /// Makes room for `more` elements that add() then gives.
+  void reserve(std::size_t more) {
+    if (size_ + more > values_.size()) values_.resize(2 * (size_ + more));
+  }
+  T& add() { return values_[size_++]; }
+  void drop() { --size_; }
+
+ private:
+  std::vector<T> values_;
+  std::size_t size_ = 0;
+};
+
 /// Per-thread memory of one block's contacts, kept so that a step allocates nothing.
 struct Touches {
-  std::vector<PairFrame> frames;
-  std::vector<Touch> touches;
+  Pile<PairFrame> frames;
+  Pile<Touch> touches;
   std::vector<int> left, later;
 
   void clear() {
@@ -89,7 +110,7 @@ void scatter(const Four& f, const Put& put, const Vec3Of<Lanes>& v, Lanes fourth
 }
 
 template <class Law, TouchKind touch_kind>
-void respond(const Four& f, const std::vector<PairFrame>& frames, const ContactProperties& p, double dt) {
+void respond(const Four& f, const Pile<PairFrame>& frames, const ContactProperties& p, double dt) {
   const auto frame = [&](const Touch& t) -> const PairFrame& {
     return frames[static_cast<std::size_t>(t.frame)];
   };
@@ -144,8 +165,7 @@ void respond(const Four& f, const std::vector<PairFrame>& frames, const ContactP
       f, [](Touch& t, Row r) { t.force = r; }, out.force, losses.friction);
   scatter(
       f, [](Touch& t, Row r) { t.moment = r; }, moment, losses.rolling);
-  if (p.dashpot.normal > 0 || p.dashpot.shear > 0)
-    for (int lane = 0; lane < Lanes::size; ++lane) f.touch[lane]->dashpot = losses.dashpot[lane];
+  for (int lane = 0; lane < Lanes::size; ++lane) f.touch[lane]->dashpot = losses.dashpot[lane];
 }
 
 }  // namespace detail

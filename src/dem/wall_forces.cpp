@@ -119,13 +119,13 @@ void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& 
           open_contact(*s.frames.back().properties,
                        opening_of(s.frames.back(), g.normal, c.radius, lever, dt), g, losses);
     }
+    s.touches.reserve(static_cast<Index>(places.n));
     for (Index m = 0; m < static_cast<Index>(places.n); ++m) {
-      Touch t;
+      Touch& t = s.touches.add();
       t.between = row_of(places.normals[m], places.overlaps[m]);
       t.centre = row_of(lever, c.radius);
       t.frame = static_cast<int>(s.frames.size()) - 1;
       t.memory = &memory.points[m];
-      s.touches.push_back(t);
     }
   }
 }
@@ -138,14 +138,15 @@ int wall_block_forces(const Model& model, State& state, Workspace& work, std::si
   WallGeometry& geometry = work.wall_geometry[b];
   refresh(model, state, work, block, geometry);
   s.clear();
+  s.frames.reserve(block.pairs.size());
   WallResult* results = &work.wall_results[b * WallBlock::capacity];
   for (Index k = 0; k < block.pairs.size(); ++k) {
     const WallPair& pair = block.pairs[k];
     results[k].losses = {};
     const Index c = static_cast<Index>(pair.clump), w = static_cast<Index>(pair.wall);
     const Vec3 shift = state.walls[w].pose.position - state.clumps.position[c];
-    s.frames.push_back(frame_of(work.motion[c], shift, model.walls[w], state.walls[w],
-                                model.pairs(state.clumps.material[c], model.walls[w].material)));
+    s.frames.add() = frame_of(work.motion[c], shift, model.walls[w], state.walls[w],
+                              model.pairs(state.clumps.material[c], model.walls[w].material));
     const WallFrame f{model.walls[w].shape, work.motion[c].rotation(), work.wall_rotation[w], shift};
     find_touches(f, pair, geometry, dt, block, s, results[k].losses);
   }

@@ -20,18 +20,9 @@ struct PairSearch {
   double due = -1;               // sum of both bodies' travel at which their motion must be measured [m]
 };
 
-/// Two pebbles that may touch: one cache line.
-struct alignas(64) PairCandidate {
-  Vec3 a;           // centre in the frame of i [m]
-  double radius_a;  // [m]
-  Vec3 b;           // centre in the frame of j [m]
-  double reach;     // sum of the radii [m]
-};
-
 /// Beside a PairBlock.
 struct PairGeometry {
   std::vector<PairSearch> search;
-  std::vector<PairCandidate> candidates;
   double quiet_until = -1;  // no pair is due before Workspace::way has come this far [m]
 };
 
@@ -52,7 +43,7 @@ struct WallGeometry {
 
 /// A stone as its contacts see it: rows of four numbers.
 struct alignas(64) StoneMotion {
-  Row position;             // and 0
+  Row position;             // and the scale on the template's lengths
   Row velocity;             // and the mass
   Row spin;                 // and 0
   std::array<Row, 3> axes;  // columns of the rotation matrix, body axes to world, and 0
@@ -64,17 +55,16 @@ struct alignas(64) StoneMotion {
   }
 };
 
-/// What a clump pair gives to its clump j.
+/// What a clump pair gives to its clump j: rows whose last number is 0.
 struct alignas(64) PairResult {
   Row force;   // on j [N]
   Row moment;  // about the centre of mass of j [N m]
 };
 
-/// What all pairs of which a clump is i take from it: it receives the opposite.
-struct alignas(32) OwnSum {
-  Row force = 0.0;     // [N], and the friction loss [J]
-  Row moment = 0.0;    // about its centre of mass [N m], and the rolling loss [J]
-  double dashpot = 0;  // loss [J]
+/// What the pairs of a patch do to a clump of this patch.
+struct PatchSum {
+  Row force = 0.0;   // [N], and the friction loss [J]
+  Row moment = 0.0;  // about its centre of mass [N m], and the rolling loss [J]
 };
 
 /// What the contacts of a clump with a wall do.
@@ -108,25 +98,30 @@ struct Workspace {
 
   double skin = 0, margin = 0;   // [m]
   bool pairs_are_valid = false;  // false: make all pairs anew before the next forces
-  double largest_shift2 = 0;     // of a clump since the pairs were made, squared [m^2]
+  double pairs_good_until = 0;   // no stone outside the pairs can touch before way + wall_way is there [m]
   double way = 0;                // no stone's travel has grown by more since the start [m]
   double wall_way = 0;           // nor has any wall's [m]
 
   std::vector<PairGeometry> pair_geometry;  // beside State::pair_blocks
   std::vector<WallGeometry> wall_geometry;  // beside State::wall_blocks
 
-  // By pair, through all blocks.
-  std::vector<PairResult> pair_results;  // means something only where there are contacts
-  std::vector<int> pair_contacts;        // touching
+  // Patches: runs of consecutive clumps, each with all pairs of which they are i, that one thread works on at
+  // a time. Their size depends on the number of clumps alone.
+  int patch_size = 1;
+  std::vector<int> first_block_of_patch;
+  std::vector<PatchSum> patch_sums;      // of each clump
+  std::vector<double> dashpot_losses;    // of each clump [J]
+  std::vector<PairResult> pair_results;  // of pairs between clumps of two patches
   std::vector<WallResult> wall_results;
-  std::vector<OwnSum> own;  // of each clump
 
   // Pairs of each clump: a range of pairs where it is i, a list of pairs where it is j, both ascending.
   std::vector<int> first_pair, first_entry, entries;
+  std::vector<PairPlace> pair_places;
+  // Results for each clump, ascending; of each pair through all blocks, -1: it is inside a patch.
+  std::vector<int> first_result, results, result_of_pair;
   // Wall pairs of each clump in ascending order of the wall.
   std::vector<int> first_wall_entry, wall_entries;
   std::vector<int> first_pair_of_wall;  // range in the wall pairs
-  std::vector<PairPlace> pair_places;
   std::vector<int> first_pair_of_block;
 
   int touching = 0;  // contacts in the last step
