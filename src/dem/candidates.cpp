@@ -149,7 +149,7 @@ void search_pair(const Model& model, const State& state, const Workspace& work, 
 
 void refresh(const Model& model, const State& state, const Workspace& work, PairBlock& block,
              PairGeometry& geometry) {
-  if (work.way < geometry.quiet_until) return;
+  geometry.active.clear();
   double least = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < block.pairs.size(); ++k) {
     PairSearch& search = geometry.search[k];
@@ -157,6 +157,7 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
     const double travel = work.travel[i] + work.travel[j];
     if (travel > search.due) search_pair(model, state, work, {block, geometry, k});
     least = std::min(least, search.due - travel);
+    if (block.pairs[k].count > 0) geometry.active.push_back(static_cast<int>(k));
   }
   // Two stones use up what is left the sooner the farther the fastest of all stones goes.
   geometry.quiet_until = work.way + 0.5 * least;

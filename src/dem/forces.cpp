@@ -75,9 +75,10 @@ void find_touches(const ClumpPair& pair, const Stone& i, const Stone& j, double 
     t.centre = centre;
     t.frame = frame;
     t.memory = &block.memory[k];
-    if (distance2 < reach * reach) continue;
-    if (t.memory->touches()) open_contact(*f.properties, opening_of(f, t, dt), *t.memory, losses);
-    s.touches.drop();
+    // Which candidates touch cannot be foretold: no jump hangs on it, but on the rare one that opens.
+    const bool is_apart = !(distance2 < reach * reach);
+    if (is_apart & t.memory->touches()) open_contact(*f.properties, opening_of(f, t, dt), *t.memory, losses);
+    s.touches.drop(is_apart);
   }
 }
 
@@ -108,17 +109,22 @@ void prefetch(const PairBlock& block) {
   lines(block.memory);
 }
 
+/// Pairs without candidates give nothing from now on.
+void clear_results(const PairBlock& block, Index first_pair, Workspace& work) {
+  for (Index k = 0; k < block.pairs.size(); ++k) {
+    const int result = work.result_of_pair[first_pair + k];
+    if (block.pairs[k].count == 0 && result >= 0) work.pair_results[static_cast<Index>(result)] = {0.0, 0.0};
+  }
+}
+
 /// Gives the touches of a block, which have responded, to its stones.
-void hand_out(const PairBlock& block, Index first_pair, const Touches& s, Workspace& work) {
+void hand_out(const PairBlock& block, const std::vector<int>& active, Index first_pair, const Touches& s,
+              Workspace& work) {
   Index next = 0;
   int frame = 0;
-  for (Index k = 0; k < block.pairs.size(); ++k) {
-    const ClumpPair& pair = block.pairs[k];
-    const int result = work.result_of_pair[first_pair + k];
-    if (pair.count == 0) {
-      if (result >= 0) work.pair_results[static_cast<Index>(result)] = {0.0, 0.0};
-      continue;
-    }
+  for (const int k : active) {
+    const ClumpPair& pair = block.pairs[static_cast<Index>(k)];
+    const int result = work.result_of_pair[first_pair + static_cast<Index>(k)];
     const TouchSum sum = sum_touches(s, frame, next);
     const PairResult second = result_for_second(sum, s.frames[static_cast<Index>(frame++)]);
     PatchSum& i = work.patch_sums[static_cast<Index>(pair.i)];
@@ -139,12 +145,17 @@ int block_forces(const Model& model, State& state, Workspace& work, Index b, dou
   thread_local Touches s;
   PairBlock& block = state.pair_blocks[b];
   if (b + 1 < state.pair_blocks.size()) prefetch(state.pair_blocks[b + 1]);
-  refresh(model, state, work, block, work.pair_geometry[b]);
+  PairGeometry& geometry = work.pair_geometry[b];
+  const Index first_pair = static_cast<Index>(work.first_pair_of_block[b]);
+  if (work.way >= geometry.quiet_until) {
+    refresh(model, state, work, block, geometry);
+    clear_results(block, first_pair, work);
+  }
   const Clumps& c = state.clumps;
   s.clear();
   s.frames.reserve(block.pairs.size());
-  for (const ClumpPair& pair : block.pairs) {
-    if (pair.count == 0) continue;
+  for (const int k : geometry.active) {
+    const ClumpPair& pair = block.pairs[static_cast<Index>(k)];
     const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
     const Stone one{work.motion[i], model.templates[static_cast<Index>(c.shape[i])].pebbles.data()};
     const Stone two{work.motion[j], model.templates[static_cast<Index>(c.shape[j])].pebbles.data()};
@@ -156,7 +167,7 @@ int block_forces(const Model& model, State& state, Workspace& work, Index b, dou
     sum.moment.pack[3] -= losses.rolling;
   }
   respond<TouchKind::between_pebbles>(s, dt);
-  hand_out(block, static_cast<Index>(work.first_pair_of_block[b]), s, work);
+  hand_out(block, geometry.active, first_pair, s, work);
   return static_cast<int>(s.touches.size());
 }
 

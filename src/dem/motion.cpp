@@ -25,14 +25,14 @@ Vec3Of<Real> damped_vector(const Vec3Of<Real>& unbalanced, const Vec3Of<Real>& v
           damped_component(unbalanced.z(), velocity.z(), alpha)};
 }
 
-/// Adds force x kick to the momentum-like quantity; returns the energy that damping took. `rate` is the
-/// velocity that goes with `momentum` through the diagonal `inertia`.
+/// Changes a velocity by the damped force over `duration`; returns the energy that damping took. `mobility`
+/// is one over the mass or the principal inertia.
 template <class Real>
-Real kick(const Vec3Of<Real>& unbalanced, const Vec3Of<Real>& inertia, double alpha, double duration,
+Real kick(const Vec3Of<Real>& unbalanced, const Vec3Of<Real>& mobility, double alpha, double duration,
           Vec3Of<Real>& rate) {
   const Vec3Of<Real> force = damped_vector(unbalanced, rate, alpha);
   const Vec3Of<Real> before = rate;
-  rate += Real(duration) * Vec3Of<Real>(force.cwiseQuotient(inertia));
+  rate += Real(duration) * Vec3Of<Real>(force.cwiseProduct(mobility));
   return Real(0.5 * duration) * (unbalanced - force).dot(before + rate);
 }
 
@@ -58,8 +58,9 @@ struct Movers {
 Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
   const double alpha = model.local_damping;
   const Vec3Of<Lanes> gravity(model.gravity.x(), model.gravity.y(), model.gravity.z());
-  const Vec3Of<Lanes> masses = Vec3Of<Lanes>::Constant(m.mass);
-  m.damping_loss += kick<Lanes>(m.force + m.mass * gravity, masses, alpha, kick_time, m.velocity);
+  const Vec3Of<Lanes> mobility = Vec3Of<Lanes>::Constant(Lanes(1.0) / m.mass);
+  const Vec3Of<Lanes> turning = m.inertia.cwiseInverse();
+  m.damping_loss += kick<Lanes>(m.force + m.mass * gravity, mobility, alpha, kick_time, m.velocity);
   m.position += Lanes(dt) * m.velocity;
 
   // Damping of the moment acts in the principal frame; without it the angular momentum is kept as it is.
@@ -67,22 +68,22 @@ Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
     const Mat3Of<Lanes> r = matrix_of(m.turn);
     const Vec3Of<Lanes> moment = r.transpose() * m.moment;
     const Vec3Of<Lanes> body_momentum = r.transpose() * m.angular_momentum;
-    const Vec3Of<Lanes> spin = body_momentum.cwiseQuotient(m.inertia);
+    const Vec3Of<Lanes> spin = body_momentum.cwiseProduct(turning);
     Vec3Of<Lanes> after = spin;
-    m.damping_loss += kick<Lanes>(moment, m.inertia, alpha, kick_time, after);
+    m.damping_loss += kick<Lanes>(moment, turning, alpha, kick_time, after);
     m.angular_momentum += Lanes(kick_time) * (r * damped_vector(moment, spin, alpha));
   } else {
     m.angular_momentum += Lanes(kick_time) * m.moment;
   }
   const TurnOf<Lanes> before = m.turn;
   const LaneMask even = m.inertia.x() == m.inertia.y() && m.inertia.y() == m.inertia.z();
-  if (any(!even)) m.turn = rotated_freely(before, m.angular_momentum, m.inertia, dt);
+  if (any(!even)) m.turn = rotated_freely(before, m.angular_momentum, turning, dt);
   if (any(even)) {
-    const TurnOf<Lanes> turned = rotated_evenly(before, m.angular_momentum, m.inertia.x(), dt);
+    const TurnOf<Lanes> turned = rotated_evenly(before, m.angular_momentum, turning.x(), dt);
     for (std::size_t k = 0; k < 4; ++k) m.turn[k] = select(even, turned[k], m.turn[k]);
   }
   m.rotation = matrix_of(m.turn);
-  m.spin = spin_of<Lanes>(m.rotation, m.inertia, m.angular_momentum);
+  m.spin = spin_of<Lanes>(m.rotation, turning, m.angular_momentum);
 
   const Lanes way = Lanes(dt) * sqrt(m.velocity.squaredNorm()) + m.bound * chord(before, m.turn);
   m.travel += way;
@@ -167,7 +168,8 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
   for (int a = 0; a < 3; ++a)
     if (!body.free_shift[static_cast<Index>(a)]) unbalanced[a] = wall.velocity[a] = 0;
-  wall.damping_loss += kick<double>(unbalanced, Vec3::Constant(body.mass), alpha, kick_time, wall.velocity);
+  wall.damping_loss +=
+      kick<double>(unbalanced, Vec3::Constant(1.0 / body.mass), alpha, kick_time, wall.velocity);
   wall.applied_work += 0.5 * kick_time * wall.applied_force.dot(before + wall.velocity);
   wall.pose.position += dt * wall.velocity;
 
@@ -179,9 +181,9 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   const Vec3 moment_body = r.transpose() * moment;
   Vec3 spin_body = (r.transpose() * wall.angular_momentum).cwiseQuotient(body.inertia);
   const Vec3 damped_moment = damped(moment_body, spin_body, alpha);
-  wall.damping_loss += kick<double>(moment_body, body.inertia, alpha, kick_time, spin_body);
+  wall.damping_loss += kick<double>(moment_body, body.inertia.cwiseInverse(), alpha, kick_time, spin_body);
   wall.angular_momentum += kick_time * (r * damped_moment);
-  wall.angular_velocity = spin_of<double>(r, body.inertia, wall.angular_momentum);
+  wall.angular_velocity = spin_of<double>(r, body.inertia.cwiseInverse(), wall.angular_momentum);
   bool all_free = true;
   for (int a = 0; a < 3; ++a) {
     if (body.free_turn[static_cast<Index>(a)]) continue;
@@ -191,7 +193,7 @@ void move_body(const Model& model, const BodyProperties& body, WallState& wall, 
   if (all_free) {
     rotate_freely(wall.pose.orientation, wall.angular_momentum, body.inertia, dt);
     const Mat3 now = wall.pose.orientation.toRotationMatrix();
-    wall.angular_velocity = spin_of<double>(now, body.inertia, wall.angular_momentum);
+    wall.angular_velocity = spin_of<double>(now, body.inertia.cwiseInverse(), wall.angular_momentum);
   } else {
     // A blocked axis takes whatever moment it needs; the momentum is that of the turn that is left.
     wall.angular_momentum = r * (r.transpose() * wall.angular_velocity).cwiseProduct(body.inertia);

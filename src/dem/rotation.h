@@ -8,12 +8,13 @@
 
 namespace trackbed {
 
-/// Angular velocity [rad/s], world axes, of a body with the given principal inertia [kg m^2].
+/// Angular velocity [rad/s], world axes. `mobility` is here and below one over the principal inertia
+/// [1/(kg m^2)].
 template <class Real>
-Vec3Of<Real> spin_of(const Mat3Of<Real>& rotation, const Vec3Of<Real>& inertia,
+Vec3Of<Real> spin_of(const Mat3Of<Real>& rotation, const Vec3Of<Real>& mobility,
                      const Vec3Of<Real>& angular_momentum) {
   const Vec3Of<Real> body = rotation.transpose() * angular_momentum;
-  return rotation * Vec3Of<Real>(body.cwiseQuotient(inertia));
+  return rotation * Vec3Of<Real>(body.cwiseProduct(mobility));
 }
 
 /// A unit quaternion, principal axes to world: w, x, y, z.
@@ -70,11 +71,10 @@ void turn_about_axis(TurnOf<Real>& q, Vec3Of<Real>& momentum, int axis, const Re
 /// rounding, the energy without drift.
 template <class Real>
 TurnOf<Real> rotated_freely(const TurnOf<Real>& before, const Vec3Of<Real>& angular_momentum,
-                            const Vec3Of<Real>& inertia, double dt) {
+                            const Vec3Of<Real>& mobility, double dt) {
   TurnOf<Real> q = before;
   Vec3Of<Real> momentum = matrix_of(q).transpose() * angular_momentum;
-  const Vec3Of<Real> share(Real(0.5 * dt) / inertia.x(), Real(0.5 * dt) / inertia.y(),
-                           Real(0.5 * dt) / inertia.z());
+  const Vec3Of<Real> share = Real(0.5 * dt) * mobility;
   const auto turn = [&](int axis, double part) {
     turn_about_axis<Real>(q, momentum, axis, Real(part) * share[axis] * momentum[axis]);
   };
@@ -89,9 +89,9 @@ TurnOf<Real> rotated_freely(const TurnOf<Real>& before, const Vec3Of<Real>& angu
 
 /// The same for a body whose principal moments are equal: one turn about the angular momentum.
 template <class Real>
-TurnOf<Real> rotated_evenly(const TurnOf<Real>& q, const Vec3Of<Real>& angular_momentum, const Real& inertia,
+TurnOf<Real> rotated_evenly(const TurnOf<Real>& q, const Vec3Of<Real>& angular_momentum, const Real& mobility,
                             double dt) {
-  const Vec3Of<Real> t = (Real(0.5 * dt) / inertia) * angular_momentum;
+  const Vec3Of<Real> t = (Real(0.5 * dt) * mobility) * angular_momentum;
   TurnOf<Real> out{
       q[0] - t.x() * q[1] - t.y() * q[2] - t.z() * q[3], q[1] + t.x() * q[0] + t.y() * q[3] - t.z() * q[2],
       q[2] + t.y() * q[0] + t.z() * q[1] - t.x() * q[3], q[3] + t.z() * q[0] + t.x() * q[2] - t.y() * q[1]};
@@ -109,8 +109,8 @@ inline Quat quat_of(const TurnOf<double>& q) {
 /// For one body, whatever its inertia.
 inline void rotate_freely(Quat& q, const Vec3& angular_momentum, const Vec3& inertia, double dt) {
   const bool is_even = inertia[0] == inertia[1] && inertia[1] == inertia[2];
-  q = quat_of(is_even ? rotated_evenly(turn_of(q), angular_momentum, inertia[0], dt)
-                      : rotated_freely(turn_of(q), angular_momentum, inertia, dt));
+  q = quat_of(is_even ? rotated_evenly(turn_of(q), angular_momentum, 1.0 / inertia[0], dt)
+                      : rotated_freely<double>(turn_of(q), angular_momentum, inertia.cwiseInverse(), dt));
 }
 
 }  // namespace trackbed

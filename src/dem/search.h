@@ -19,7 +19,8 @@ bool pairs_are_due(const State& state, Workspace& work);
 /// Makes all pairs anew; the memory of contacts, and candidates that are still good, are carried over.
 void rebuild_pairs(const Model& model, State& state, Workspace& work);
 
-/// Makes the candidate lists of the block's pairs anew where they are due.
+/// Makes the candidate lists of the block's pairs anew where they are due. To be called only when the block's
+/// time of quiet is over.
 void refresh(const Model& model, const State& state, const Workspace& work, PairBlock& block,
              PairGeometry& geometry);
 void refresh(const Model& model, const State& state, const Workspace& work, WallBlock& block,

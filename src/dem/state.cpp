@@ -153,6 +153,7 @@ std::uint64_t hash(const State& state) {
   h.add(state.dt);
   h.add(state.planned_dt);
   h.add(state.step);
+  h.add(state.next_look);
   return h.value();
 }
 

@@ -103,6 +103,7 @@ struct State {
   double dt = 0;                       // of the last step [s]; 0 before the first
   double planned_dt = 0;               // of the next [s]; 0: to be found
   std::int64_t step = 0;
+  std::int64_t next_look = 0;  // step after which the state is inspected and the step planned anew
 };
 
 /// Adds a stone at rest; returns its index. Mass is density x template volume x scale^3.

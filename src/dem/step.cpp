@@ -24,6 +24,13 @@ class Stopwatch {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
+void look(const Model& model, State& state, const Workspace& work) {
+  inspect(model, state, work);
+  const StepPlan plan = plan_steps(model, state, work);
+  state.planned_dt = plan.dt;
+  state.next_look = state.step + plan.steps;
+}
+
 }  // namespace
 
 void settle_contacts(const Model& model, State& state, Workspace& work) {
@@ -33,8 +40,7 @@ void settle_contacts(const Model& model, State& state, Workspace& work) {
   // A step of no length: overlaps and normals are found, nothing slides, stored shear is kept.
   contact_forces(model, state, work, 0.0);
   gather_forces(model, state, work, 0.0);
-  inspect(model, state, work);
-  state.planned_dt = next_step(model, state, work);
+  look(model, state, work);
 }
 
 void step(const Model& model, State& state, Workspace& work) {
@@ -63,10 +69,7 @@ void step(const Model& model, State& state, Workspace& work) {
   state.dt = dt;
   state.time += dt;
   ++state.step;
-  if (state.step % model.time_step.interval == 0) {
-    inspect(model, state, work);
-    state.planned_dt = next_step(model, state, work);
-  }
+  if (state.step >= state.next_look) look(model, state, work);
 }
 
 }  // namespace trackbed

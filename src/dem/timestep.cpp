@@ -83,32 +83,53 @@ double limit_of_body(const Model& model, const State& state, const Workspace& wo
   return shortest(k, body.mass, body.inertia);
 }
 
-StableStep kinematic_step(const Model& model, const State& state, const Workspace& work) {
-  StableStep step{std::numeric_limits<double>::infinity(), -1, true};
+/// How lively a bed is.
+struct Pace {
+  double length = std::numeric_limits<double>::infinity();  // smallest pebble radius [m]
+  double speed = 0, acceleration = 0;                       // largest [m/s], [m/s^2]
+  int clump = -1;                                           // the fastest
+};
+
+Pace pace_of(const Model& model, const State& state, const Workspace& work) {
+  Pace pace;
   const Clumps& c = state.clumps;
-  double length = std::numeric_limits<double>::infinity();
-  double speed = 0, acceleration = 0;
   for (Index i = 0; i < c.id.size(); ++i) {
-    length = std::min(length, c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius);
+    pace.length =
+        std::min(pace.length, c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius);
     const double v = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
-    acceleration = std::max(acceleration, (c.force[i] / c.mass[i] + model.gravity).norm());
-    if (v > speed || std::isnan(v)) {
-      speed = v;
-      step.clump = static_cast<int>(i);
+    pace.acceleration = std::max(pace.acceleration, (c.force[i] / c.mass[i] + model.gravity).norm());
+    if (v > pace.speed || std::isnan(v)) {
+      pace.speed = v;
+      pace.clump = static_cast<int>(i);
     }
   }
   for (Index w = 0; w < state.walls.size(); ++w) {
     const WallState& wall = state.walls[w];
     if (!wall.present) continue;
-    speed = std::max(speed, wall.velocity.norm() + model.walls[w].shape.reach * wall.angular_velocity.norm());
+    pace.speed = std::max(pace.speed,
+                          wall.velocity.norm() + model.walls[w].shape.reach * wall.angular_velocity.norm());
     if (const auto& body = model.walls[w].body)
-      acceleration =
-          std::max(acceleration, ((wall.force + wall.applied_force) / body->mass + model.gravity).norm());
+      pace.acceleration = std::max(pace.acceleration,
+                                   ((wall.force + wall.applied_force) / body->mass + model.gravity).norm());
   }
-  const double travel = model.time_step.largest_travel * length;
-  const double root = std::sqrt(speed * speed + 2.0 * acceleration * travel);
-  if (speed + root > 0) step.dt = 2.0 * travel / (speed + root);
-  return step;
+  return pace;
+}
+
+StableStep kinematic_step(const Model& model, const Pace& pace) {
+  const double travel = model.time_step.largest_travel * pace.length;
+  const double root = std::sqrt(pace.speed * pace.speed + 2.0 * pace.acceleration * travel);
+  const double dt =
+      pace.speed + root > 0 ? 2.0 * travel / (pace.speed + root) : std::numeric_limits<double>::infinity();
+  return {dt, pace.clump, true, 0};
+}
+
+/// Steps of length dt for which no stone goes farther than it may in the shortest interval.
+int steps_for(const TimeStepRule& rule, const Pace& pace, double dt) {
+  const double way = rule.shortest_interval * rule.largest_travel * pace.length;
+  const double speed = pace.speed + pace.acceleration * rule.longest_interval * dt;
+  const double steps = std::floor(way / (speed * dt));
+  if (!(steps > rule.shortest_interval)) return rule.shortest_interval;
+  return steps < rule.longest_interval ? static_cast<int>(steps) : rule.longest_interval;
 }
 
 }  // namespace
@@ -149,26 +170,29 @@ DiagonalStiffness stiffness_of_wall(const Model& model, const State& state, cons
 }
 
 StableStep stable_step(const Model& model, const State& state, const Workspace& work) {
-  StableStep step{std::numeric_limits<double>::infinity(), -1, false};
+  StableStep step{std::numeric_limits<double>::infinity(), -1, false, 0};
   const Clumps& c = state.clumps;
   std::vector<double> dt(c.id.size());
 #pragma omp parallel for schedule(static) if (c.size() > 64)
   for (int i = 0; i < c.size(); ++i)
     dt[static_cast<Index>(i)] = limit_of_clump(model, state, work, static_cast<Index>(i));
   for (Index i = 0; i < dt.size(); ++i)
-    if (dt[i] < step.dt) step = {dt[i], static_cast<int>(i), false};
+    if (dt[i] < step.dt) step = {dt[i], static_cast<int>(i), false, 0};
   for (Index w = 0; w < model.walls.size(); ++w) {
     if (!model.walls[w].body || !state.walls[w].present) continue;
     const double limit = limit_of_body(model, state, work, w);
-    if (limit < step.dt) step = {limit, -1, false};
+    if (limit < step.dt) step = {limit, -1, false, 0};
   }
   step.dt *= model.time_step.safety;
 
-  const StableStep kinematic = kinematic_step(model, state, work);
-  return kinematic.dt < step.dt ? kinematic : step;
+  const Pace pace = pace_of(model, state, work);
+  const StableStep kinematic = kinematic_step(model, pace);
+  if (kinematic.dt < step.dt) step = kinematic;
+  step.steps = steps_for(model.time_step, pace, step.dt);
+  return step;
 }
 
-double next_step(const Model& model, const State& state, const Workspace& work) {
+StepPlan plan_steps(const Model& model, const State& state, const Workspace& work) {
   const StableStep stable = stable_step(model, state, work);
   const TimeStepRule& rule = model.time_step;
   if (rule.fixed) {
@@ -180,10 +204,11 @@ double next_step(const Model& model, const State& state, const Workspace& work) 
           "the chosen time step {:.3g} s is above the stable one, {:.3g} s, that {} allows by its {}",
           *rule.fixed, stable.dt, who, stable.is_kinematic ? "speed" : "stiffness"));
     }
-    return *rule.fixed;
+    return {*rule.fixed, stable.steps};
   }
-  if (state.dt == 0) return stable.dt;
-  return std::min(stable.dt, state.dt * std::pow(rule.largest_growth, rule.interval));
+  if (state.dt == 0) return {stable.dt, rule.shortest_interval};
+  return {std::min(stable.dt, state.dt * std::pow(rule.largest_growth, rule.shortest_interval)),
+          stable.steps};
 }
 
 }  // namespace trackbed

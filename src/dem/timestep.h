@@ -30,14 +30,20 @@ struct StableStep {
   double dt;          // [s]
   int clump;          // the stone that limits it; -1: a body
   bool is_kinematic;  // by its motion rather than its stiffness
+  int steps;          // for which it may be kept: contacts hardly change meanwhile
+};
+
+struct StepPlan {
+  double dt;  // [s]
+  int steps;  // after which to plan again
 };
 
 /// safety x sqrt(m/K) over all degrees of freedom, each stone with at least one contact of the stiffest kind
 /// it can make at its farthest point; and the kinematic limit of the fastest.
 StableStep stable_step(const Model& model, const State& state, const Workspace& work);
 
-/// The step to take next, by the rule: stable, not grown too fast, or the user's. Throws RunError when the
+/// The steps to take next, by the rule: stable, not grown too fast, or the user's. Throws RunError when the
 /// user's is above the stable one.
-double next_step(const Model& model, const State& state, const Workspace& work);
+StepPlan plan_steps(const Model& model, const State& state, const Workspace& work);
 
 }  // namespace trackbed

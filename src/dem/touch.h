@@ -55,7 +55,8 @@ class Pile {
     if (size_ + more > values_.size()) values_.resize(2 * (size_ + more));
   }
   T& add() { return values_[size_++]; }
-  void drop() { --size_; }
+  /// Takes the last one back, or not.
+  void drop(bool last) { size_ -= last ? 1 : 0; }
 
  private:
   std::vector<T> values_;

@@ -126,7 +126,6 @@ void append_candidates(const Model& model, const State& state, double skin, cons
 void refresh(const Model& model, const State& state, const Workspace& work, WallBlock& block,
              WallGeometry& geometry) {
   // If one pair needs a new list, the whole small block gets one.
-  if (work.way + work.wall_way < geometry.quiet_until) return;
   if (!must_search(state, work, block, geometry)) {
     rest(work, block, geometry);
     return;

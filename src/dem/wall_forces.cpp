@@ -136,7 +136,7 @@ int wall_block_forces(const Model& model, State& state, Workspace& work, std::si
   thread_local Touches s;
   WallBlock& block = state.wall_blocks[b];
   WallGeometry& geometry = work.wall_geometry[b];
-  refresh(model, state, work, block, geometry);
+  if (work.way + work.wall_way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
   s.clear();
   s.frames.reserve(block.pairs.size());
   WallResult* results = &work.wall_results[b * WallBlock::capacity];

@@ -23,6 +23,7 @@ struct PairSearch {
 /// Beside a PairBlock.
 struct PairGeometry {
   std::vector<PairSearch> search;
+  std::vector<int> active;  // pairs of the block that have candidates
   double quiet_until = -1;  // no pair is due before Workspace::way has come this far [m]
 };
 

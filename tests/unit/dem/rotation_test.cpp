@@ -8,7 +8,7 @@ namespace trackbed {
 namespace {
 
 double energy(const Quat& q, const Vec3& inertia, const Vec3& momentum) {
-  return 0.5 * momentum.dot(spin_of<double>(q.toRotationMatrix(), inertia, momentum));
+  return 0.5 * momentum.dot(spin_of<double>(q.toRotationMatrix(), inertia.cwiseInverse(), momentum));
 }
 
 /// Angle between two orientations [rad].
@@ -28,7 +28,7 @@ TEST(Rotation, SpinIsMomentumOverInertiaInTheBodysAxes) {
   const Vec3 inertia(1, 2, 4), spin(0.3, -1, 2);
   const Mat3 r = start.toRotationMatrix();
   const Mat3 tensor = r * inertia.asDiagonal() * r.transpose();
-  EXPECT_LT((spin_of<double>(r, inertia, tensor * spin) - spin).norm(), 1e-14);
+  EXPECT_LT((spin_of<double>(r, inertia.cwiseInverse(), tensor * spin) - spin).norm(), 1e-14);
 }
 
 TEST(Rotation, BallTurnsAboutItsMomentum) {

@@ -120,11 +120,11 @@ TEST(NextStep, GrowsSlowlyAndRefusesAStepAboveTheStableOne) {
   scenes::add_ball(sim, Vec3::Zero());
   const double stable = step_of(sim);
   sim.state.dt = stable / 100;
-  EXPECT_NEAR(next_step(sim.model, sim.state, sim.work) / (stable / 100 * std::pow(1.05, 20)), 1, 1e-12);
+  EXPECT_NEAR(plan_steps(sim.model, sim.state, sim.work).dt / (stable / 100 * std::pow(1.05, 20)), 1, 1e-12);
   sim.model.time_step.fixed = 0.99 * stable;
-  EXPECT_EQ(next_step(sim.model, sim.state, sim.work), 0.99 * stable);
+  EXPECT_EQ(plan_steps(sim.model, sim.state, sim.work).dt, 0.99 * stable);
   sim.model.time_step.fixed = 1.01 * stable;
-  EXPECT_THROW(next_step(sim.model, sim.state, sim.work), RunError);
+  EXPECT_THROW(plan_steps(sim.model, sim.state, sim.work), RunError);
 }
 
 /// A plate of 10 x 10 pebbles with dashpots of ratio 0.3 lies on a plane and is struck: its largest speed
