@@ -6,6 +6,10 @@
 #include <cmath>
 #include <cstddef>
 
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 #include <Eigen/Core>
 
 #include "base/vec.h"
@@ -101,8 +105,18 @@ inline LaneMask operator||(LaneMask a, LaneMask b) {
 inline LaneMask operator!(LaneMask a) {
   return {~a.pack};
 }
+/// Bit k tells of lane k.
+inline unsigned bits(LaneMask m) {
+#ifdef __AVX__
+  return static_cast<unsigned>(_mm256_movemask_pd(reinterpret_cast<__m256d>(m.pack)));
+#else
+  unsigned out = 0;
+  for (int k = 0; k < Lanes::size; ++k) out |= (m.pack[k] != 0 ? 1u : 0u) << k;
+  return out;
+#endif
+}
 inline bool any(LaneMask m) {
-  return (m.pack[0] | m.pack[1] | m.pack[2] | m.pack[3]) != 0;
+  return bits(m) != 0;
 }
 inline bool any(bool m) {
   return m;

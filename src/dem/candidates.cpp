@@ -145,11 +145,29 @@ void search_pair(const Model& model, const State& state, const Workspace& work, 
   search = {now.offset, now.turn, range, travel + range};
 }
 
+/// The block's candidates as the forces want them.
+void list_candidates(const Model& model, const State& state, const Workspace& work, const PairBlock& block,
+                     PairGeometry& geometry) {
+  const Clumps& c = state.clumps;
+  geometry.candidates.clear();
+  for (Index p = 0; p < block.pairs.size(); ++p) {
+    const ClumpPair& pair = block.pairs[p];
+    if (pair.count == 0) continue;
+    const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
+    const int first_a = work.first_pebble[static_cast<Index>(c.shape[i])];
+    const int first_b = work.first_pebble[static_cast<Index>(c.shape[j])];
+    const int sum_j = work.sum_of_pair[static_cast<Index>(geometry.first_pair) + p];
+    const int properties = model.pairs.index(c.material[i], c.material[j]);
+    for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k)
+      geometry.candidates.push_back(
+          {pair.i, pair.j, first_a + block.keys[k].a, first_b + block.keys[k].b, sum_j, properties});
+  }
+}
+
 }  // namespace
 
 void refresh(const Model& model, const State& state, const Workspace& work, PairBlock& block,
              PairGeometry& geometry) {
-  geometry.active.clear();
   double least = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < block.pairs.size(); ++k) {
     PairSearch& search = geometry.search[k];
@@ -157,10 +175,10 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
     const double travel = work.travel[i] + work.travel[j];
     if (travel > search.due) search_pair(model, state, work, {block, geometry, k});
     least = std::min(least, search.due - travel);
-    if (block.pairs[k].count > 0) geometry.active.push_back(static_cast<int>(k));
   }
   // Two stones use up what is left the sooner the farther the fastest of all stones goes.
   geometry.quiet_until = work.way + 0.5 * least;
+  list_candidates(model, state, work, block, geometry);
 }
 
 }  // namespace trackbed

@@ -1,183 +1,229 @@
-// Contacts between stones, and the sums of all forces.
+// Contacts between stones, four at a time, and the sums of all forces.
 #include "dem/forces.h"
 
 #include <algorithm>
 
+#include "dem/laws/table.h"
 #include "dem/open_contact.h"
+#include "dem/respond.h"
 #include "dem/search.h"
-#include "dem/touch.h"
 
 namespace trackbed {
 namespace {
 
 using Index = std::size_t;
 
-void frame_pair(const StoneMotion& i, const StoneMotion& j, const ContactProperties& p, PairFrame& f) {
-  Row shift = j.position - i.position;
-  shift.pack[3] = 0;
-  f.shift = shift;
-  f.spin = j.spin - i.spin;
-  f.mean_spin = Lanes(0.5) * (i.spin + j.spin);
-  Row velocity = j.velocity - i.velocity - cross(j.spin, shift);
-  if (p.dashpot.normal > 0 || p.dashpot.shear > 0) {
-    const double mi = i.velocity[3], mj = j.velocity[3];
-    velocity.pack[3] = mi * mj / (mi + mj);
-  }
-  f.velocity = velocity;
-  f.properties = &p;
-}
-
-/// Motion of a contact that opens, at the place where its pebbles are nearest.
-ContactKinematics opening_of(const PairFrame& f, const Touch& t, double dt) {
-  const Vec3 between = xyz(t.between);
-  const double distance = between.norm(), reach = t.between[3], radius_1 = t.centre[3];
-  const Vec3 lever = xyz(t.centre) + (radius_1 - 0.5 * (reach - distance)) / distance * between;
-  ContactKinematics k;
-  k.spin = xyz(f.spin);
-  k.velocity = xyz(f.velocity) + k.spin.cross(lever);
-  k.radius = radius_1 * (reach - radius_1) / reach;
-  k.dt = dt;
-  return k;
-}
-
-/// A stone of a pair: its motion, and its pebbles at scale 1.
-struct Stone {
-  const StoneMotion& motion;
-  const Pebble* pebbles;
-
-  /// Centre of a pebble from the stone's, world axes, and its radius.
-  Row place(std::int32_t pebble) const {
-    const Pebble& p = pebbles[pebble];
-    const double scale = motion.position[3];
-    const Vec3 centre = scale * p.centre;
-    Row out = motion.axes[0] * centre.x() + motion.axes[1] * centre.y() + motion.axes[2] * centre.z();
-    out.pack[3] = scale * p.radius;
-    return out;
-  }
+/// Four candidates and their memories; the last one stands in for those that are missing.
+struct Four {
+  std::array<const Candidate*, Lanes::size> candidate;
+  std::array<ContactMemory*, Lanes::size> memory;
 };
 
-/// Adds the touching candidates of a pair to `s`, and ends the contacts that have opened.
-void find_touches(const ClumpPair& pair, const Stone& i, const Stone& j, double dt, PairBlock& block,
-                  Touches& s, Losses& losses) {
-  const PairFrame& f = s.frames.back();
-  const int frame = static_cast<int>(s.frames.size()) - 1;
-  s.touches.reserve(static_cast<Index>(pair.count));
-  for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
-    const PebblePair key = block.keys[k];
-    const Row centre = i.place(key.a), other = j.place(key.b);
-    const double reach = centre[3] + other[3];
-    Row between = f.shift + other - centre;
-    const Row squares = between * between;
-    const double distance2 = squares[0] + squares[1] + squares[2];
-    between.pack[3] = reach;
-    Touch& t = s.touches.add();
-    t.between = between;
-    t.centre = centre;
-    t.frame = frame;
-    t.memory = &block.memory[k];
-    // Which candidates touch cannot be foretold: no jump hangs on it, but on the rare one that opens.
-    const bool is_apart = !(distance2 < reach * reach);
-    if (is_apart & t.memory->touches()) open_contact(*f.properties, opening_of(f, t, dt), *t.memory, losses);
-    s.touches.drop(is_apart);
+template <class Get>
+Vec3Of<Lanes> gather(const Get& get, Lanes& fourth) {
+  Lanes a = get(0), b = get(1), c = get(2), d = get(3);
+  transpose(a, b, c, d);
+  fourth = d;
+  return {a, b, c};
+}
+
+/// Two pebbles in each lane: where they are.
+struct Places {
+  Vec3Of<Lanes> shift;    // from centre of mass to centre of mass [m]
+  Vec3Of<Lanes> centre;   // of pebble a from the centre of mass of i [m]
+  Vec3Of<Lanes> between;  // from pebble a to pebble b [m]
+  Lanes distance2;        // its square
+  Lanes radius_a, reach;  // reach: sum of the radii [m]
+};
+
+/// Centres of four pebbles from the centres of mass of their stones, and their radii.
+template <class Motion>
+Vec3Of<Lanes> place(const Motion& motion, const std::array<const Row*, Lanes::size>& pebble,
+                    const Lanes& scale, Lanes& radius) {
+  Lanes unused;
+  const Vec3Of<Lanes> body = gather([&](Index k) { return *pebble[k]; }, radius) * scale;
+  radius *= scale;
+  Vec3Of<Lanes> world = gather([&](Index k) { return motion(k).axes[0]; }, unused) * body.x();
+  world += gather([&](Index k) { return motion(k).axes[1]; }, unused) * body.y();
+  world += gather([&](Index k) { return motion(k).axes[2]; }, unused) * body.z();
+  return world;
+}
+
+Places places_of(const Workspace& work, const Four& f) {
+  const auto motion_i = [&](Index k) -> const StoneMotion& {
+    return work.motion[static_cast<Index>(f.candidate[k]->i)];
+  };
+  const auto motion_j = [&](Index k) -> const StoneMotion& {
+    return work.motion[static_cast<Index>(f.candidate[k]->j)];
+  };
+  std::array<const Row*, Lanes::size> a, b;
+  for (Index k = 0; k < a.size(); ++k) {
+    a[k] = &work.pebbles[static_cast<Index>(f.candidate[k]->a)];
+    b[k] = &work.pebbles[static_cast<Index>(f.candidate[k]->b)];
+  }
+  Places p;
+  Lanes scale_i, scale_j, radius_b;
+  const Vec3Of<Lanes> x_i = gather([&](Index k) { return motion_i(k).position; }, scale_i);
+  p.shift = gather([&](Index k) { return motion_j(k).position; }, scale_j) - x_i;
+  p.centre = place(motion_i, a, scale_i, p.radius_a);
+  p.between = p.shift + place(motion_j, b, scale_j, radius_b) - p.centre;
+  p.distance2 = p.between.squaredNorm();
+  p.reach = p.radius_a + radius_b;
+  return p;
+}
+
+/// Velocity of stone j against stone i as if both were one at the centre of mass of i, and their spins.
+struct Motions {
+  Vec3Of<Lanes> velocity, spin, mean_spin;
+  Lanes reduced_mass;
+};
+
+Motions motions_of(const Workspace& work, const Four& f, const Vec3Of<Lanes>& shift) {
+  const auto motion_i = [&](Index k) -> const StoneMotion& {
+    return work.motion[static_cast<Index>(f.candidate[k]->i)];
+  };
+  const auto motion_j = [&](Index k) -> const StoneMotion& {
+    return work.motion[static_cast<Index>(f.candidate[k]->j)];
+  };
+  Lanes mass_i, mass_j, unused;
+  const Vec3Of<Lanes> v_i = gather([&](Index k) { return motion_i(k).velocity; }, mass_i);
+  const Vec3Of<Lanes> v_j = gather([&](Index k) { return motion_j(k).velocity; }, mass_j);
+  const Vec3Of<Lanes> w_i = gather([&](Index k) { return motion_i(k).spin; }, unused);
+  const Vec3Of<Lanes> w_j = gather([&](Index k) { return motion_j(k).spin; }, unused);
+  Motions m;
+  m.velocity = v_j - v_i - w_j.cross(shift);
+  m.spin = w_j - w_i;
+  m.mean_spin = Lanes(0.5) * (w_i + w_j);
+  m.reduced_mass = mass_i * mass_j / (mass_i + mass_j);
+  return m;
+}
+
+/// Ends the contact in one lane that touched in the last step and touches no more.
+void end_contact(const ContactProperties& p, const Places& at, const Motions& m, int lane, double dt,
+                 ContactMemory& memory, Losses& losses) {
+  const auto in_lane = [lane](const Vec3Of<Lanes>& v) { return Vec3(v.x()[lane], v.y()[lane], v.z()[lane]); };
+  const Vec3 between = in_lane(at.between);
+  const double distance = between.norm(), reach = at.reach[lane], radius = at.radius_a[lane];
+  const Vec3 lever = in_lane(at.centre) + (radius - 0.5 * (reach - distance)) / distance * between;
+  ContactKinematics k;
+  k.spin = in_lane(m.spin);
+  k.velocity = in_lane(m.velocity) + k.spin.cross(lever);
+  k.radius = radius * (reach - radius) / reach;
+  k.dt = dt;
+  open_contact(p, k, memory, losses);
+}
+
+/// Adds the responses in the lanes of `touching` to the sums of their stones.
+template <class Law>
+void hand_out(const Four& f, unsigned touching, const Vec3Of<Lanes>& shift, const Response& r,
+              const ContactProperties& p, Workspace& work) {
+  const Vec3Of<Lanes> on_j = r.moment - shift.cross(r.force);
+  std::array<Row, Lanes::size> force{r.force.x(), r.force.y(), r.force.z(), 0.0},
+      moment_i{r.moment.x(), r.moment.y(), r.moment.z(), -r.losses.friction},
+      moment_j{on_j.x(), on_j.y(), on_j.z(), 0.0};
+  for (auto* rows : {&force, &moment_i, &moment_j}) transpose((*rows)[0], (*rows)[1], (*rows)[2], (*rows)[3]);
+  const bool has_rare_losses = Law::rolls || p.dashpot.normal > 0 || p.dashpot.shear > 0;
+  for (Index k = 0; k < Lanes::size; ++k) {
+    if (!(touching >> k & 1u)) continue;
+    const Candidate& c = *f.candidate[k];
+    ForceSum& i = work.sums[static_cast<Index>(c.i)];
+    i.force -= force[k];
+    i.moment -= moment_i[k];
+    ForceSum& j = work.sums[static_cast<Index>(c.sum_j)];
+    j.force += force[k];
+    j.moment += moment_j[k];
+    if (!has_rare_losses) continue;
+    Losses& losses = work.rare_losses[static_cast<Index>(c.i)];
+    losses.rolling += r.losses.rolling[static_cast<int>(k)];
+    losses.dashpot += r.losses.dashpot[static_cast<int>(k)];
   }
 }
 
-/// Sums the touches of a pair, which begin at `next`.
-TouchSum sum_touches(const Touches& s, int frame, Index& next) {
-  TouchSum sum;
-  for (; next < s.touches.size() && s.touches[next].frame == frame; ++next) sum += s.touches[next];
-  return sum;
-}
+/// Lets four candidates respond, those in the lanes of `wanted`; returns how many touch.
+template <class Law>
+int respond(const Four& f, unsigned wanted, const ContactProperties& p, double dt, Workspace& work) {
+  const Places at = places_of(work, f);
+  const unsigned touching = wanted & bits(at.distance2 < at.reach * at.reach);
+  unsigned opened = 0;
+  for (Index k = 0; k < Lanes::size; ++k) opened |= static_cast<unsigned>(f.memory[k]->touches()) << k;
+  opened &= wanted & ~touching;
+  if ((touching | opened) == 0) return 0;
+  const Motions m = motions_of(work, f, at.shift);
+  for (int lane = 0; opened != 0 && lane < Lanes::size; ++lane) {
+    if (!(opened >> lane & 1u)) continue;
+    const Index k = static_cast<Index>(lane);
+    Losses losses;
+    end_contact(p, at, m, lane, dt, *f.memory[k], losses);
+    const Index i = static_cast<Index>(f.candidate[k]->i);
+    work.sums[i].moment.pack[3] += losses.friction;
+    work.rare_losses[i].rolling += losses.rolling;
+  }
+  if (touching == 0) return 0;
 
-/// What clump j receives.
-PairResult result_for_second(const TouchSum& sum, const PairFrame& frame) {
-  PairResult r{sum.force, sum.moment - cross(frame.shift, sum.force)};
-  r.force.pack[3] = 0;
-  r.moment.pack[3] = 0;
-  return r;
+  ContactKinematicsOf<Lanes> k;
+  const Lanes distance = sqrt(at.distance2);
+  k.dt = dt;
+  k.overlap = at.reach - distance;
+  k.normal = (Lanes(1.0) / distance) * at.between;
+  if constexpr (Law::rolls) k.radius = at.radius_a * (at.reach - at.radius_a) / at.reach;
+  const Vec3Of<Lanes> lever = at.centre + (at.radius_a - Lanes(0.5) * k.overlap) * k.normal;
+  k.spin = m.spin;
+  k.velocity = m.velocity + m.spin.cross(lever);
+  k.mean_twist = m.mean_spin.dot(k.normal);
+  k.reduced_mass = m.reduced_mass;
+  hand_out<Law>(f, touching, at.shift, respond_with<Law>(k, p, lever, f.memory, touching), p, work);
+  return __builtin_popcount(touching);
 }
 
 /// Asks for the memory of a block that comes soon: it lies where no pattern leads the processor.
-void prefetch(const PairBlock& block) {
+void prefetch(const PairBlock& block, const PairGeometry& geometry) {
   constexpr Index line = 64;
   const auto lines = [](const auto& values) {
     const char* at = reinterpret_cast<const char*>(values.data());
     for (Index k = 0; k < values.size() * sizeof(values[0]); k += line) __builtin_prefetch(at + k, 1);
   };
-  lines(block.pairs);
-  lines(block.keys);
+  lines(geometry.candidates);
   lines(block.memory);
 }
 
-/// Pairs without candidates give nothing from now on.
-void clear_results(const PairBlock& block, Index first_pair, Workspace& work) {
-  for (Index k = 0; k < block.pairs.size(); ++k) {
-    const int result = work.result_of_pair[first_pair + k];
-    if (block.pairs[k].count == 0 && result >= 0) work.pair_results[static_cast<Index>(result)] = {0.0, 0.0};
-  }
-}
-
-/// Gives the touches of a block, which have responded, to its stones.
-void hand_out(const PairBlock& block, const std::vector<int>& active, Index first_pair, const Touches& s,
-              Workspace& work) {
-  Index next = 0;
-  int frame = 0;
-  for (const int k : active) {
-    const ClumpPair& pair = block.pairs[static_cast<Index>(k)];
-    const int result = work.result_of_pair[first_pair + static_cast<Index>(k)];
-    const TouchSum sum = sum_touches(s, frame, next);
-    const PairResult second = result_for_second(sum, s.frames[static_cast<Index>(frame++)]);
-    PatchSum& i = work.patch_sums[static_cast<Index>(pair.i)];
-    i.force -= sum.force;
-    i.moment -= sum.moment;
-    work.dashpot_losses[static_cast<Index>(pair.i)] += sum.dashpot;
-    if (result >= 0) {
-      work.pair_results[static_cast<Index>(result)] = second;
-    } else {
-      PatchSum& j = work.patch_sums[static_cast<Index>(pair.j)];
-      j.force += second.force;
-      j.moment += second.moment;
+int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
+  PairBlock& block = state.pair_blocks[b];
+  PairGeometry& geometry = work.pair_geometry[b];
+  if (b + 1 < state.pair_blocks.size()) prefetch(state.pair_blocks[b + 1], work.pair_geometry[b + 1]);
+  if (work.way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
+  int touching = 0;
+  const Index n = geometry.candidates.size();
+  for (Index first = 0; first < n; first += Lanes::size) {
+    Four f;
+    for (Index k = 0; k < Lanes::size; ++k) {
+      const Index at = std::min(first + k, n - 1);
+      f.candidate[k] = &geometry.candidates[at];
+      f.memory[k] = &block.memory[at];
+    }
+    // One law and one set of properties at a time: almost always all four.
+    unsigned left = (1u << std::min<Index>(Lanes::size, n - first)) - 1u;
+    while (left != 0) {
+      const int properties = f.candidate[static_cast<Index>(__builtin_ctz(left))]->properties;
+      unsigned alike = 0;
+      for (Index k = 0; k < Lanes::size; ++k)
+        alike |= static_cast<unsigned>(f.candidate[k]->properties == properties) << k;
+      const ContactProperties& p = model.pairs[properties];
+      with_law(p.law, [&]<class Law>() { touching += respond<Law>(f, left & alike, p, dt, work); });
+      left &= ~alike;
     }
   }
-}
-
-int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
-  thread_local Touches s;
-  PairBlock& block = state.pair_blocks[b];
-  if (b + 1 < state.pair_blocks.size()) prefetch(state.pair_blocks[b + 1]);
-  PairGeometry& geometry = work.pair_geometry[b];
-  const Index first_pair = static_cast<Index>(work.first_pair_of_block[b]);
-  if (work.way >= geometry.quiet_until) {
-    refresh(model, state, work, block, geometry);
-    clear_results(block, first_pair, work);
-  }
-  const Clumps& c = state.clumps;
-  s.clear();
-  s.frames.reserve(block.pairs.size());
-  for (const int k : geometry.active) {
-    const ClumpPair& pair = block.pairs[static_cast<Index>(k)];
-    const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
-    const Stone one{work.motion[i], model.templates[static_cast<Index>(c.shape[i])].pebbles.data()};
-    const Stone two{work.motion[j], model.templates[static_cast<Index>(c.shape[j])].pebbles.data()};
-    frame_pair(one.motion, two.motion, model.pairs(c.material[i], c.material[j]), s.frames.add());
-    Losses losses;
-    find_touches(pair, one, two, dt, block, s, losses);
-    PatchSum& sum = work.patch_sums[i];
-    sum.force.pack[3] -= losses.friction;
-    sum.moment.pack[3] -= losses.rolling;
-  }
-  respond<TouchKind::between_pebbles>(s, dt);
-  hand_out(block, geometry.active, first_pair, s, work);
-  return static_cast<int>(s.touches.size());
+  return touching;
 }
 
 int patch_forces(const Model& model, State& state, Workspace& work, Index patch, double dt) {
-  const Index size = static_cast<Index>(work.patch_size);
-  const Index last = std::min((patch + 1) * size, work.patch_sums.size());
-  for (Index c = patch * size; c < last; ++c) {
-    work.patch_sums[c] = {};
-    work.dashpot_losses[c] = 0;
-  }
+  const Index size = static_cast<Index>(work.patch_size), n = work.rare_losses.size();
+  const Index first = patch * size, last = std::min(first + size, n);
+  std::fill(work.sums.begin() + static_cast<std::ptrdiff_t>(first),
+            work.sums.begin() + static_cast<std::ptrdiff_t>(last), ForceSum{});
+  std::fill(work.rare_losses.begin() + static_cast<std::ptrdiff_t>(first),
+            work.rare_losses.begin() + static_cast<std::ptrdiff_t>(last), Losses{});
+  std::fill(work.sums.begin() + work.first_sum_of_patch[patch],
+            work.sums.begin() + work.first_sum_of_patch[patch + 1], ForceSum{});
   int touching = 0;
   for (int b = work.first_block_of_patch[patch]; b < work.first_block_of_patch[patch + 1]; ++b)
     touching += block_forces(model, state, work, static_cast<Index>(b), dt);
@@ -185,13 +231,12 @@ int patch_forces(const Model& model, State& state, Workspace& work, Index patch,
 }
 
 void gather_clump(State& state, const Workspace& work, Index c) {
-  Row force = work.patch_sums[c].force, moment = work.patch_sums[c].moment;
+  Row force = work.sums[c].force, moment = work.sums[c].moment;
   StoneLosses& losses = state.clumps.losses[c];
-  losses.friction -= force[3];
-  losses.rolling -= moment[3];
-  losses.dashpot += work.dashpot_losses[c];
-  for (int e = work.first_result[c]; e < work.first_result[c + 1]; ++e) {
-    const PairResult& r = work.pair_results[static_cast<Index>(work.results[static_cast<Index>(e)])];
+  losses.friction += moment[3];
+  losses += work.rare_losses[c];
+  for (int e = work.first_sum[c]; e < work.first_sum[c + 1]; ++e) {
+    const ForceSum& r = work.sums[static_cast<Index>(work.outer_sums[static_cast<Index>(e)])];
     force += r.force;
     moment += r.moment;
   }

@@ -59,6 +59,10 @@ class PairTable {
   ContactProperties& operator()(int a, int b) { return table_[static_cast<std::size_t>(a * n_ + b)]; }
   int size() const { return n_; }
 
+  /// Number of a pair, whichever way round, and its properties.
+  int index(int a, int b) const { return a < b ? a * n_ + b : b * n_ + a; }
+  const ContactProperties& operator[](int index) const { return table_[static_cast<std::size_t>(index)]; }
+
   /// Largest normal or shear stiffness a piece of this material can meet [N/m].
   double stiffest(int material) const;
 

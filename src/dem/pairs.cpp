@@ -167,7 +167,6 @@ void list_by_second(const Pairs& pairs, Index n, Chosen&& chosen, std::vector<in
 /// Where each pair lies, and which pairs each clump has.
 void index_pairs(const Pairs& near, const State& state, Workspace& work) {
   const Index n = static_cast<Index>(state.clumps.size());
-  work.first_pair_of_block.clear();
   work.first_block_of_patch.clear();
   work.pair_places.clear();
   int patch = -1;
@@ -175,7 +174,7 @@ void index_pairs(const Pairs& near, const State& state, Workspace& work) {
     const PairBlock& block = state.pair_blocks[b];
     for (; patch < block.pairs.front().i / work.patch_size; ++patch)
       work.first_block_of_patch.push_back(static_cast<int>(b));
-    work.first_pair_of_block.push_back(static_cast<int>(work.pair_places.size()));
+    work.pair_geometry[b].first_pair = static_cast<int>(work.pair_places.size());
     for (Index k = 0; k < block.pairs.size(); ++k)
       work.pair_places.push_back({static_cast<int>(b), static_cast<int>(k)});
   }
@@ -188,17 +187,23 @@ void index_pairs(const Pairs& near, const State& state, Workspace& work) {
   list_by_second(
       near, n, [](Index) { return true; }, work.first_entry, work.entries);
 
-  work.result_of_pair.assign(near.size(), -1);
-  int results = 0;
-  for (Index p = 0; p < near.size(); ++p)
-    if (near[p].first / work.patch_size != near[p].second / work.patch_size)
-      work.result_of_pair[p] = results++;
-  list_by_second(
-      near, n, [&](Index p) { return work.result_of_pair[p] >= 0; }, work.first_result, work.results);
-  for (int& r : work.results) r = work.result_of_pair[static_cast<Index>(r)];
-  work.pair_results.resize(static_cast<Index>(results));
-  work.patch_sums.assign(n, {});
-  work.dashpot_losses.assign(n, 0.0);
+  work.sum_of_pair.resize(near.size());
+  work.first_sum_of_patch.assign(patches + 1, 0);
+  int sums = static_cast<int>(n);
+  for (Index p = 0; p < near.size(); ++p) {
+    const int of_i = near[p].first / work.patch_size;
+    const bool is_inside = of_i == near[p].second / work.patch_size;
+    work.sum_of_pair[p] = is_inside ? near[p].second : sums++;
+    if (!is_inside) ++work.first_sum_of_patch[static_cast<Index>(of_i) + 1];
+  }
+  std::partial_sum(work.first_sum_of_patch.begin(), work.first_sum_of_patch.end(),
+                   work.first_sum_of_patch.begin());
+  for (int& first : work.first_sum_of_patch) first += static_cast<int>(n);
+  const auto is_between = [&](Index p) { return work.sum_of_pair[p] >= static_cast<int>(n); };
+  list_by_second(near, n, is_between, work.first_sum, work.outer_sums);
+  for (int& r : work.outer_sums) r = work.sum_of_pair[static_cast<Index>(r)];
+  work.sums.assign(static_cast<Index>(sums), {});
+  work.rare_losses.assign(n, {});
 }
 
 void rebuild_clump_pairs(State& state, Workspace& work) {
@@ -275,6 +280,16 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
     work.wall_entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(p);
 }
 
+/// All pebbles as rows.
+void list_pebbles(const Model& model, Workspace& work) {
+  work.pebbles.clear();
+  work.first_pebble.clear();
+  for (const ClumpTemplate& t : model.templates) {
+    work.first_pebble.push_back(static_cast<int>(work.pebbles.size()));
+    for (const Pebble& p : t.pebbles) work.pebbles.push_back(row_of(p.centre, p.radius));
+  }
+}
+
 StoneMotion motion_of(const Clumps& clumps, Index c) {
   const Mat3 axes = clumps.orientation[c].toRotationMatrix();
   return {row_of(clumps.position[c], clumps.scale[c]),
@@ -299,6 +314,7 @@ void prepare(const Model& model, const State& state, Workspace& work) {
   const Index n = static_cast<Index>(state.clumps.size());
   const bool is_new = work.motion.size() != n || work.wall_rotation.size() != state.walls.size();
   if (!is_new && work.pairs_are_valid) return;
+  list_pebbles(model, work);
   work.motion.resize(n);
   work.bound.resize(n);
   work.travel.resize(n, 0.0);

@@ -1,8 +1,12 @@
 // Contacts of stones with walls and bodies.
 #include "dem/forces.h"
+
+#include <algorithm>
+
+#include "dem/laws/table.h"
 #include "dem/open_contact.h"
+#include "dem/respond.h"
 #include "dem/search.h"
-#include "dem/touch.h"
 
 namespace trackbed {
 namespace {
@@ -30,6 +34,34 @@ void sort_memory(const std::array<Vec3, max_wall_points>& normals, int n, WallMe
     *best = {};
   }
 }
+
+/// The motion of a wall against a stone as if both were one at the stone's centre of mass.
+struct PairMotion {
+  Row velocity;   // [m/s], and the reduced mass [kg]
+  Row spin;       // [rad/s]
+  Row mean_spin;  // [rad/s]
+  Row shift;      // from the stone's centre of mass to the wall's origin [m]
+  int properties;
+};
+
+/// A place where a pebble touches a wall.
+struct Touch {
+  Row normal;  // to the wall, and the overlap [m]
+  Row centre;  // of the pebble from the stone's centre of mass [m], and its radius [m]
+  int pair;
+  ContactMemory* memory;
+};
+
+/// Per-thread memory of one block's contacts, kept so that a step allocates nothing.
+struct Touches {
+  std::vector<PairMotion> motions;
+  std::vector<Touch> touches;
+
+  void clear() {
+    motions.clear();
+    touches.clear();
+  }
+};
 
 /// A clump and a wall: everything that does not depend on the pebble.
 struct WallFrame {
@@ -74,35 +106,33 @@ Places places_of(const WallFrame& f, const WallCandidate& c, const Vec3& lever, 
   return out;
 }
 
-PairFrame frame_of(const StoneMotion& stone, const Vec3& shift, const Wall& wall, const WallState& state,
-                   const ContactProperties& p) {
-  PairFrame f;
+PairMotion motion_of(const StoneMotion& stone, const Vec3& shift, const Wall& wall, const WallState& state) {
+  PairMotion m;
   double mass = stone.velocity[3];
   if (wall.body) mass *= wall.body->mass / (wall.body->mass + mass);
   const Row spin = row_of(state.angular_velocity);
-  f.shift = row_of(shift);
-  f.spin = spin - stone.spin;
-  f.mean_spin = Lanes(0.5) * (spin + stone.spin);
-  f.velocity = row_of(state.velocity) - stone.velocity - cross(spin, f.shift);
-  f.velocity.pack[3] = mass;
-  f.properties = &p;
-  return f;
+  m.shift = row_of(shift);
+  m.spin = spin - stone.spin;
+  m.mean_spin = Lanes(0.5) * (spin + stone.spin);
+  m.velocity = row_of(state.velocity) - stone.velocity - cross(spin, m.shift);
+  m.velocity.pack[3] = mass;
+  return m;
 }
 
 /// Motion of a contact that opens, at the pebble's surface.
-ContactKinematics opening_of(const PairFrame& f, const Vec3& normal, double radius, const Vec3& centre,
+ContactKinematics opening_of(const PairMotion& m, const Vec3& normal, double radius, const Vec3& centre,
                              double dt) {
   ContactKinematics k;
-  k.spin = xyz(f.spin);
-  k.velocity = xyz(f.velocity) + k.spin.cross(centre + radius * normal);
+  k.spin = xyz(m.spin);
+  k.velocity = xyz(m.velocity) + k.spin.cross(centre + radius * normal);
   k.radius = radius;
   k.dt = dt;
   return k;
 }
 
 /// Adds the touching places of a pair to `s`, and ends the contacts that have opened.
-void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& geometry, double dt,
-                  WallBlock& block, Touches& s, Losses& losses) {
+void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& geometry,
+                  const ContactProperties& p, double dt, WallBlock& block, Touches& s, Losses& losses) {
   for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
     const WallCandidate& c = geometry.candidates[k];
     const Vec3 lever = f.clump_rotation * c.centre;
@@ -116,16 +146,83 @@ void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& 
       sort_memory(places.normals, places.n, memory, gone);
       for (ContactMemory& g : gone.points)
         if (g.touches())
-          open_contact(*s.frames.back().properties,
-                       opening_of(s.frames.back(), g.normal, c.radius, lever, dt), g, losses);
+          open_contact(p, opening_of(s.motions.back(), g.normal, c.radius, lever, dt), g, losses);
     }
-    s.touches.reserve(static_cast<Index>(places.n));
-    for (Index m = 0; m < static_cast<Index>(places.n); ++m) {
-      Touch& t = s.touches.add();
-      t.between = row_of(places.normals[m], places.overlaps[m]);
-      t.centre = row_of(lever, c.radius);
-      t.frame = static_cast<int>(s.frames.size()) - 1;
-      t.memory = &memory.points[m];
+    const int number = static_cast<int>(s.motions.size()) - 1;
+    for (Index m = 0; m < static_cast<Index>(places.n); ++m)
+      s.touches.push_back({row_of(places.normals[m], places.overlaps[m]), row_of(lever, c.radius), number,
+                           &memory.points[m]});
+  }
+}
+
+/// Four touches; the last one stands in for those that are missing.
+using Four = std::array<const Touch*, Lanes::size>;
+
+template <class Get>
+Vec3Of<Lanes> gather(const Four& f, const Get& get, Lanes& fourth) {
+  Lanes a = get(*f[0]), b = get(*f[1]), c = get(*f[2]), d = get(*f[3]);
+  transpose(a, b, c, d);
+  fourth = d;
+  return {a, b, c};
+}
+
+/// Lets four touches respond, those in the lanes of `wanted`.
+template <class Law>
+void respond(const Four& f, unsigned wanted, const Touches& s, const ContactProperties& p, double dt,
+             WallResult* results) {
+  const auto motion = [&](const Touch& t) -> const PairMotion& {
+    return s.motions[static_cast<Index>(t.pair)];
+  };
+  Lanes unused;
+  ContactKinematicsOf<Lanes> k;
+  k.dt = dt;
+  k.normal = gather(
+      f, [](const Touch& t) { return t.normal; }, k.overlap);
+  const Vec3Of<Lanes> centre = gather(
+      f, [](const Touch& t) { return t.centre; }, k.radius);
+  const Vec3Of<Lanes> lever = centre + (k.radius - Lanes(0.5) * k.overlap) * k.normal;
+  k.spin = gather(
+      f, [&](const Touch& t) { return motion(t).spin; }, unused);
+  k.velocity = gather(
+      f, [&](const Touch& t) { return motion(t).velocity; }, k.reduced_mass);
+  k.velocity += k.spin.cross(lever);
+  k.mean_twist = gather(
+                     f, [&](const Touch& t) { return motion(t).mean_spin; }, unused)
+                     .dot(k.normal);
+  const Vec3Of<Lanes> shift = gather(
+      f, [&](const Touch& t) { return motion(t).shift; }, unused);
+  const Response r =
+      respond_with<Law>(k, p, lever, {f[0]->memory, f[1]->memory, f[2]->memory, f[3]->memory}, wanted);
+  const Vec3Of<Lanes> on_wall = r.moment - shift.cross(r.force);
+  for (int lane = 0; lane < Lanes::size; ++lane) {
+    if (!(wanted >> lane & 1u)) continue;
+    const auto in_lane = [lane](const Vec3Of<Lanes>& v) {
+      return Vec3(v.x()[lane], v.y()[lane], v.z()[lane]);
+    };
+    WallResult& out = results[f[static_cast<Index>(lane)]->pair];
+    out.force += in_lane(r.force);
+    out.moment_clump -= in_lane(r.moment);
+    out.moment_wall += in_lane(on_wall);
+    out.losses += Losses{r.losses.friction[lane], r.losses.rolling[lane], r.losses.dashpot[lane]};
+  }
+}
+
+/// Lets all touches of a block respond.
+void respond(const Model& model, const Touches& s, double dt, WallResult* results) {
+  const Index n = s.touches.size();
+  for (Index first = 0; first < n; first += Lanes::size) {
+    Four f;
+    for (Index k = 0; k < Lanes::size; ++k) f[k] = &s.touches[std::min(first + k, n - 1)];
+    const auto properties_of = [&](Index k) { return s.motions[static_cast<Index>(f[k]->pair)].properties; };
+    unsigned left = (1u << std::min<Index>(Lanes::size, n - first)) - 1u;
+    while (left != 0) {
+      const int properties = properties_of(static_cast<Index>(__builtin_ctz(left)));
+      unsigned alike = 0;
+      for (Index k = 0; k < Lanes::size; ++k)
+        alike |= static_cast<unsigned>(properties_of(k) == properties) << k;
+      const ContactProperties& p = model.pairs[properties];
+      with_law(p.law, [&]<class Law>() { respond<Law>(f, left & alike, s, p, dt, results); });
+      left &= ~alike;
     }
   }
 }
@@ -138,31 +235,19 @@ int wall_block_forces(const Model& model, State& state, Workspace& work, std::si
   WallGeometry& geometry = work.wall_geometry[b];
   if (work.way + work.wall_way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
   s.clear();
-  s.frames.reserve(block.pairs.size());
   WallResult* results = &work.wall_results[b * WallBlock::capacity];
   for (Index k = 0; k < block.pairs.size(); ++k) {
     const WallPair& pair = block.pairs[k];
-    results[k].losses = {};
+    results[k] = {};
     const Index c = static_cast<Index>(pair.clump), w = static_cast<Index>(pair.wall);
     const Vec3 shift = state.walls[w].pose.position - state.clumps.position[c];
-    s.frames.add() = frame_of(work.motion[c], shift, model.walls[w], state.walls[w],
-                              model.pairs(state.clumps.material[c], model.walls[w].material));
+    s.motions.push_back(motion_of(work.motion[c], shift, model.walls[w], state.walls[w]));
+    s.motions.back().properties = model.pairs.index(state.clumps.material[c], model.walls[w].material);
     const WallFrame f{model.walls[w].shape, work.motion[c].rotation(), work.wall_rotation[w], shift};
-    find_touches(f, pair, geometry, dt, block, s, results[k].losses);
+    find_touches(f, pair, geometry, model.pairs[s.motions.back().properties], dt, block, s,
+                 results[k].losses);
   }
-  respond<TouchKind::at_wall>(s, dt);
-
-  Index next = 0;
-  for (Index k = 0; k < block.pairs.size(); ++k) {
-    TouchSum sum;
-    for (; next < s.touches.size() && s.touches[next].frame == static_cast<int>(k); ++next)
-      sum += s.touches[next];
-    WallResult& r = results[k];
-    r.force = xyz(sum.force);
-    r.moment_clump = -xyz(sum.moment);
-    r.moment_wall = xyz(sum.moment - cross(s.frames[k].shift, sum.force));
-    r.losses += Losses{sum.force[3], sum.moment[3], sum.dashpot};
-  }
+  respond(model, s, dt, results);
   return static_cast<int>(s.touches.size());
 }
 

@@ -20,11 +20,20 @@ struct PairSearch {
   double due = -1;               // sum of both bodies' travel at which their motion must be measured [m]
 };
 
+/// Two pebbles that may touch.
+struct Candidate {
+  int i, j;        // clumps
+  int a, b;        // pebbles, in Workspace::pebbles
+  int sum_j;       // where in Workspace::sums the effect on j goes; that on i goes to i
+  int properties;  // of the pair of materials, in PairTable
+};
+
 /// Beside a PairBlock.
 struct PairGeometry {
   std::vector<PairSearch> search;
-  std::vector<int> active;  // pairs of the block that have candidates
-  double quiet_until = -1;  // no pair is due before Workspace::way has come this far [m]
+  std::vector<Candidate> candidates;  // beside the keys
+  int first_pair = 0;                 // number of its first pair, through all blocks
+  double quiet_until = -1;            // no pair is due before Workspace::way has come this far [m]
 };
 
 /// A pebble, and the facets near it.
@@ -56,16 +65,10 @@ struct alignas(64) StoneMotion {
   }
 };
 
-/// What a clump pair gives to its clump j: rows whose last number is 0.
-struct alignas(64) PairResult {
-  Row force;   // on j [N]
-  Row moment;  // about the centre of mass of j [N m]
-};
-
-/// What the pairs of a patch do to a clump of this patch.
-struct PatchSum {
-  Row force = 0.0;   // [N], and the friction loss [J]
-  Row moment = 0.0;  // about its centre of mass [N m], and the rolling loss [J]
+/// Sum of what contacts do to a clump.
+struct alignas(64) ForceSum {
+  Row force = 0.0;   // [N], and 0
+  Row moment = 0.0;  // about its centre of mass [N m], and the friction loss of contacts of which it is i [J]
 };
 
 /// What the contacts of a clump with a wall do.
@@ -89,6 +92,8 @@ struct Profile {
 struct Workspace {
   // Of each clump.
   std::vector<StoneMotion> motion;
+  std::vector<Row> pebbles;             // centre and radius, at scale 1, of all templates one after the other
+  std::vector<int> first_pebble;        // of each template
   std::vector<double> bound;            // bounding radius [m]
   std::vector<double> travel;           // length of way of its farthest point since the start [m]
   std::vector<Vec3> position_at_build;  // when the pairs were made [m]
@@ -110,20 +115,23 @@ struct Workspace {
   // a time. Their size depends on the number of clumps alone.
   int patch_size = 1;
   std::vector<int> first_block_of_patch;
-  std::vector<PatchSum> patch_sums;      // of each clump
-  std::vector<double> dashpot_losses;    // of each clump [J]
-  std::vector<PairResult> pair_results;  // of pairs between clumps of two patches
+  // Of each clump, from the pairs of its own patch; then of each pair between clumps of two patches, on its
+  // j.
+  std::vector<ForceSum> sums;
+  std::vector<Losses> rare_losses;  // of each clump: rolling and dashpots [J]
   std::vector<WallResult> wall_results;
 
   // Pairs of each clump: a range of pairs where it is i, a list of pairs where it is j, both ascending.
   std::vector<int> first_pair, first_entry, entries;
   std::vector<PairPlace> pair_places;
-  // Results for each clump, ascending; of each pair through all blocks, -1: it is inside a patch.
-  std::vector<int> first_result, results, result_of_pair;
+  // Of each clump: the sums that come from other patches, ascending. Of each pair: where the effect on j
+  // goes.
+  std::vector<int> first_sum, outer_sums, sum_of_pair;
+  // Of each patch: its range of the sums of pairs.
+  std::vector<int> first_sum_of_patch;
   // Wall pairs of each clump in ascending order of the wall.
   std::vector<int> first_wall_entry, wall_entries;
   std::vector<int> first_pair_of_wall;  // range in the wall pairs
-  std::vector<int> first_pair_of_block;
 
   int touching = 0;  // contacts in the last step
   Profile profile;

@@ -1,0 +1,58 @@
+// The response of four contacts at a time, whatever their geometry comes from.
+#pragma once
+
+#include <array>
+
+#include "base/lanes.h"
+#include "dem/contact.h"
+#include "dem/material.h"
+
+namespace trackbed {
+
+struct Response {
+  Vec3Of<Lanes> force;   // on body 2 [N]
+  Vec3Of<Lanes> moment;  // on body 2 about the point from which the lever is measured [N m]
+  LossesOf<Lanes> losses;
+};
+
+/// Lets a law answer the motion of four contacts; `lever` leads from the centre of mass of body 1 to the
+/// contact. The memories in the lanes of `wanted` are brought up to date; what is worked out in the other
+/// lanes means nothing.
+template <class Law>
+Response respond_with(const ContactKinematicsOf<Lanes>& k, const ContactProperties& p,
+                      const Vec3Of<Lanes>& lever, const std::array<ContactMemory*, Lanes::size>& memories,
+                      unsigned wanted) {
+  const auto load = [&](auto member) {
+    std::array<Row, Lanes::size> rows;
+    for (std::size_t n = 0; n < rows.size(); ++n) rows[n] = Row::load((memories[n]->*member).data());
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    return rows;
+  };
+  const auto store = [&](auto member, const Vec3Of<Lanes>& v, Lanes fourth) {
+    std::array<Row, Lanes::size> rows{v.x(), v.y(), v.z(), fourth};
+    transpose(rows[0], rows[1], rows[2], rows[3]);
+    for (std::size_t n = 0; n < rows.size(); ++n)
+      if (wanted >> n & 1u) rows[n].store((memories[n]->*member).data());
+  };
+  ContactMemoryOf<Lanes> memory;
+  const auto normal = load(&ContactMemory::normal), shear = load(&ContactMemory::shear);
+  memory.normal = {normal[0], normal[1], normal[2]};
+  memory.overlap = normal[3];
+  memory.shear = {shear[0], shear[1], shear[2]};
+  if constexpr (Law::rolls) {
+    const auto rolling = load(&ContactMemory::rolling);
+    memory.rolling = {rolling[0], rolling[1], rolling[2]};
+  }
+
+  Response out;
+  const ContactForceOf<Lanes> response = Law::respond(k, p, memory, out.losses);
+  store(&ContactMemory::normal, memory.normal, memory.overlap);
+  store(&ContactMemory::shear, memory.shear, 0.0);
+  if constexpr (Law::rolls) store(&ContactMemory::rolling, memory.rolling, 0.0);
+  out.force = response.force;
+  out.moment = lever.cross(response.force);
+  if constexpr (Law::rolls) out.moment += response.moment;
+  return out;
+}
+
+}  // namespace trackbed
