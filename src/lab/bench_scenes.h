@@ -23,7 +23,7 @@ struct BenchScene {
   double side = 0;                     // of the square floor, for beds that come in a file of spheres [m]
   int tiles_x = 1, tiles_y = 1;        // beds laid side by side
   double time_step = 0;                // [s]; 0: automatic
-  int warm = 300;                      // steps before timing: contacts find their shear forces again
+  int warm = 600;                      // steps before timing: contacts find their shear forces again
   int steps = 0;                       // of a timed block; 0: about a second
 };
 
