@@ -58,7 +58,7 @@ TEST_F(BenchScenes, SettleABedOnceAndKeepIt) {
   scene.overrides.back() = "walls.box.size=[\"0.15 m\", \"0.15 m\", \"0.06 m\"]";
   scene.overrides.emplace_back("materials.stone.kn=1e5 N/m");
   BenchRun made = start_bench(scene, beds());
-  EXPECT_EQ(told_, (std::vector<std::string>{"shapes", "fill", "pack", "rest"}));
+  EXPECT_EQ(told_, (std::vector<std::string>{"shapes", "fill", "fall", "pack", "rest"}));
   EXPECT_GT(made.sim.state.clumps.size(), 10);
   told_.clear();
   const BenchRun read = start_bench(scene, beds());
