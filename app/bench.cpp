@@ -147,10 +147,9 @@ BenchResult bench(const BenchScene& scene, const BenchOptions& o) {
 void print(const BenchResult& r) {
   const auto shares = r.shares();
   fmt::print(
-      "{:10} {} threads  {:.1f} steps/s ({:.1f} - {:.1f}), {} stones of {:.1f} pebbles, {} contacts, {} "
-      "candidates, search "
-      "{:.0f} "
-      "%, forces {:.0f} %, gather {:.0f} %, motion {:.0f} %, {:.0f} MB, hash {:016x}\n",
+      "{:10} {} threads  {:.1f} steps/s ({:.1f} - {:.1f}), {} stones of {:.1f} pebbles, {} contacts, "
+      "{} candidates, search {:.0f} %, forces {:.0f} %, gather {:.0f} %, motion {:.0f} %, {:.0f} MB, "
+      "hash {:016x}\n",
       r.scene, r.threads, r.median(), r.rates.front(), r.rates.back(), r.stones, r.pebbles, r.contacts,
       r.candidates, shares[0], shares[1], shares[2], shares[3], r.peak, r.hash);
   std::fflush(stdout);
@@ -163,31 +162,39 @@ std::string processor() {
   return "unknown";
 }
 
-void append(const BenchResult& r, const fs::path& file) {
+/// Opens the table, with its header when it is new.
+std::ofstream open_table(const fs::path& file) {
   const bool is_new = !fs::exists(file) || fs::file_size(file) == 0;
   std::ofstream out(file, std::ios::app);
   if (is_new)
-    out << "date,commit,machine,scene,threads,stones,pebbles a stone,median [steps/s],least "
-           "[steps/s],greatest [steps/s],"
-           "contacts,candidates,search [%],forces [%],gather [%],motion [%],peak [MB],hash\n";
+    out << "date,commit,machine,scene,threads,stones,pebbles a stone,median [steps/s],least [steps/s],"
+           "greatest [steps/s],contacts,candidates,search [%],forces [%],gather [%],motion [%],peak "
+           "[MB],hash\n";
+  if (!out.flush()) throw InputError(file.string() + ": cannot be written");
+  return out;
+}
+
+void append(const BenchResult& r, const fs::path& file) {
+  std::ofstream out = open_table(file);
+  out << fmt::format("{:%F %T},{},{},{},", fmt::localtime(std::time(nullptr)), TRACKBED_COMMIT,
+                     csv_field(processor()), csv_field(r.scene));
+  out << fmt::format("{},{},{:.1f},{:.2f},{:.2f},{:.2f},{},{},", r.threads, r.stones, r.pebbles, r.median(),
+                     r.rates.front(), r.rates.back(), r.contacts, r.candidates);
   const auto shares = r.shares();
-  out << fmt::format(
-      "{:%F "
-      "%T},{},{},{},{},{},{:.1f},{:.2f},{:.2f},{:.2f},{},{},{:.1f},{:.1f},{:.1f},{:.1f},{:.0f},{:016x}\n",
-      fmt::localtime(std::time(nullptr)), TRACKBED_COMMIT, csv_field(processor()), csv_field(r.scene),
-      r.threads, r.stones, r.pebbles, r.median(), r.rates.front(), r.rates.back(), r.contacts, r.candidates,
-      shares[0], shares[1], shares[2], shares[3], r.peak, r.hash);
-  if (!out.flush()) throw RunError(file.string() + ": cannot be written");
+  out << fmt::format("{:.1f},{:.1f},{:.1f},{:.1f},{:.0f},{:016x}\n", shares[0], shares[1], shares[2],
+                     shares[3], r.peak, r.hash);
+  if (!out.flush()) throw RunError(file.string() + ": the row could not be written");
 }
 
 void print_scenes() {
   for (const BenchScene& scene : bench_scenes()) fmt::print("{:10}  {}\n", scene.name, scene.about);
   fmt::print(
-      "Contacts of 1e7 N/m, friction 0.5, local damping 0.7; time step 8e-6 s, in the cyclic box the "
-      "automatic "
-      "one.\nA bed is settled once from the program's own stones and kept; the boxes have the same stone "
-      "shapes "
-      "and sizes.\n");
+      "Contacts of 1e7 N/m, friction 0.5, local damping 0.7, time step 8e-6 s; in the cyclic box those of "
+      "its\n"
+      "case, with the automatic time step. A bed is settled once from the program's own stones and kept. "
+      "The\n"
+      "boxes have the same sizes and shapes of stones, but for the ball, each in a bed settled for "
+      "itself.\n");
 }
 
 /// What is to be timed; refuses what does not go together.
@@ -239,7 +246,9 @@ int bench_command(int argc, char** argv) {
     print_scenes();
     return 0;
   }
-  for (const BenchScene& scene : chosen_scenes(o)) {
+  const std::vector<BenchScene> scenes = chosen_scenes(o);
+  if (!o.csv.empty()) open_table(o.csv);  // better refused now than after the first scene
+  for (const BenchScene& scene : scenes) {
     const BenchResult result = bench(scene, o);
     print(result);
     if (!o.csv.empty()) append(result, o.csv);

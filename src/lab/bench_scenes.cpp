@@ -145,6 +145,7 @@ Experiment experiment_of(const BenchScene& scene, bool with_shapes) {
 }
 
 void make_bed(const BenchScene& scene, const BenchBeds& beds) {
+  make_folder(beds.folder);
   beds.tell("shapes");
   auto [sim, stages] = experiment_of(scene, true);
   stages.pop_back();
@@ -157,7 +158,6 @@ void make_bed(const BenchScene& scene, const BenchBeds& beds) {
     }
     stage.stage->close(sim);
   }
-  make_folder(beds.folder);
   write_kept_bed(sim, kept_bed(scene, beds.folder));
 }
 

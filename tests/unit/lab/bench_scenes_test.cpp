@@ -56,7 +56,7 @@ TEST_F(BenchScenes, AreAllMadeOfCasesThatCanBeRun) {
 TEST_F(BenchScenes, SettleABedOnceAndKeepIt) {
   BenchScene scene = find_bench_scene("w1");
   scene.overrides.back() = "walls.box.size=[\"0.15 m\", \"0.15 m\", \"0.06 m\"]";
-  scene.overrides.emplace_back("materials.stone.kn=1e5 N/m");
+  scene.overrides.emplace_back("materials.stone.kn=1e6 N/m");
   BenchRun made = start_bench(scene, beds());
   EXPECT_EQ(told_, (std::vector<std::string>{"shapes", "fill", "fall", "pack", "rest"}));
   EXPECT_GT(made.sim.state.clumps.size(), 10);
