@@ -162,14 +162,19 @@ std::string processor() {
   return "unknown";
 }
 
+constexpr std::string_view table_header =
+    "date,commit,machine,scene,threads,stones,pebbles a stone,median [steps/s],least [steps/s],"
+    "greatest [steps/s],contacts,candidates,search [%],forces [%],gather [%],motion [%],peak [MB],hash";
+
 /// Opens the table, with its header when it is new.
 std::ofstream open_table(const fs::path& file) {
   const bool is_new = !fs::exists(file) || fs::file_size(file) == 0;
+  std::string header;
+  if (!is_new) std::getline(std::ifstream(file), header);
+  if (!is_new && header != table_header)
+    throw InputError(file.string() + ": has other columns than this table; name a new file");
   std::ofstream out(file, std::ios::app);
-  if (is_new)
-    out << "date,commit,machine,scene,threads,stones,pebbles a stone,median [steps/s],least [steps/s],"
-           "greatest [steps/s],contacts,candidates,search [%],forces [%],gather [%],motion [%],peak "
-           "[MB],hash\n";
+  if (is_new) out << table_header << '\n';
   if (!out.flush()) throw InputError(file.string() + ": cannot be written");
   return out;
 }
@@ -193,8 +198,9 @@ void print_scenes() {
       "its\n"
       "case, with the automatic time step. A bed is settled once from the program's own stones and kept. "
       "The\n"
-      "boxes have the same sizes and shapes of stones, but for the ball, each in a bed settled for "
-      "itself.\n");
+      "boxes have stones of the same sizes and, but for the ball, shapes; each bed is settled for itself "
+      "where\n"
+      "nothing else is said.\n");
 }
 
 /// What is to be timed; refuses what does not go together.

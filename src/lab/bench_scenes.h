@@ -20,11 +20,12 @@ struct BenchScene {
   std::string text;                    // the case
   std::vector<std::string> overrides;  // of its values
   std::string bed;                     // scenes with the same name here start from the same kept bed
-  double side = 0;                     // of the square floor, for beds that come in a file of spheres [m]
-  int tiles_x = 1, tiles_y = 1;        // beds laid side by side
-  double time_step = 0;                // [s]; 0: automatic
-  int warm = 600;                      // steps before timing: contacts find their shear forces again
-  int steps = 0;                       // of a timed block; 0: about a second
+  std::shared_ptr<const BenchScene> settled_as;  // whose bed finer stones of the same shapes take over
+  double side = 0;               // of the square floor, for beds that come in a file of spheres [m]
+  int tiles_x = 1, tiles_y = 1;  // beds laid side by side
+  double time_step = 0;          // [s]; 0: automatic
+  int warm = 600;                // steps before timing: contacts find their shear forces again
+  int steps = 0;                 // of a timed block; 0: about a second
 };
 
 const std::vector<BenchScene>& bench_scenes();

@@ -69,6 +69,29 @@ TEST_F(BenchScenes, SettleABedOnceAndKeepIt) {
   EXPECT_LT(unbalanced_ratio(made.sim.model, made.sim.state), 0.01);
 }
 
+TEST_F(BenchScenes, FinerStonesTakeOverASettledBed) {
+  BenchScene coarse = find_bench_scene("w2b");
+  coarse.overrides.back() = "walls.box.size=[\"0.15 m\", \"0.15 m\", \"0.06 m\"]";
+  coarse.overrides.emplace_back("materials.stone.kn=1e6 N/m");
+  coarse.overrides.emplace_back("stones.distance=145 deg");
+  coarse.overrides.emplace_back("stones.ratio=0.4");
+  BenchScene fine = coarse;
+  fine.bed = "fine";
+  fine.overrides.emplace_back("stones.distance=155 deg");
+  fine.settled_as = std::make_shared<const BenchScene>(coarse);
+  const BenchRun a = start_bench(coarse, beds());
+  told_.clear();
+  const BenchRun b = start_bench(fine, beds());
+  EXPECT_EQ(told_, (std::vector<std::string>{"shapes", "rest"}));
+  EXPECT_GT(b.sim.model.templates[0].pebbles.size(), 1.5 * a.sim.model.templates[0].pebbles.size());
+  const Clumps &before = a.sim.state.clumps, &after = b.sim.state.clumps;
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_EQ(after.mass, before.mass);
+  // So few stones in one loose layer are pushed about by finer corners, but not past each other.
+  for (std::size_t k = 0; k < before.id.size(); ++k)
+    EXPECT_LT((after.position[k] - before.position[k]).norm(), 0.045) << k;
+}
+
 TEST_F(BenchScenes, AnotherRecipeIsAnotherBed) {
   const BenchScene w1 = find_bench_scene("w1");
   EXPECT_EQ(kept_bed(w1, folder_), kept_bed(find_bench_scene("balls-500k"), folder_));
