@@ -87,9 +87,9 @@ TEST_F(BenchScenes, FinerStonesTakeOverASettledBed) {
   const Clumps &before = a.sim.state.clumps, &after = b.sim.state.clumps;
   ASSERT_EQ(after.size(), before.size());
   EXPECT_EQ(after.mass, before.mass);
-  // So few stones in one loose layer are pushed about by finer corners, but not past each other.
+  // Finer corners push the stones apart a little, but throw none.
   for (std::size_t k = 0; k < before.id.size(); ++k)
-    EXPECT_LT((after.position[k] - before.position[k]).norm(), 0.045) << k;
+    EXPECT_LT((after.position[k] - before.position[k]).norm(), 0.01) << k;
 }
 
 TEST_F(BenchScenes, AnotherRecipeIsAnotherBed) {
