@@ -117,8 +117,9 @@ struct DuePair {
   Index pair;
 };
 
-/// Measures how far the two stones have moved; looks for their candidates if that is too far.
-void search_pair(const Model& model, const State& state, const Workspace& work, const DuePair& due) {
+/// Measures how far the two stones have moved; looks for their candidates if that is too far. Returns whether
+/// the pair's list is a new one.
+bool search_pair(const Model& model, const State& state, const Workspace& work, const DuePair& due) {
   const Clumps& c = state.clumps;
   const ClumpPair& pair = due.block.pairs[due.pair];
   PairSearch& search = due.geometry.search[due.pair];
@@ -128,7 +129,7 @@ void search_pair(const Model& model, const State& state, const Workspace& work, 
   const double left = search.range - motion_since(search, now, work.bound[j]);
   if (left > nearly_used_up * search.range) {
     search.due = travel + left;
-    return;
+    return false;
   }
   const double apart = now.offset.norm() - work.bound[i] - work.bound[j];
   const double skin = skin_of(state, work, i, j);
@@ -136,13 +137,15 @@ void search_pair(const Model& model, const State& state, const Workspace& work, 
   if (apart <= skin)
     find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
                     model.templates[static_cast<Index>(c.shape[j])], c.scale[j], now, skin, scratch());
-  if (apart <= skin || pair.count > 0) {
+  const bool has_list = apart <= skin || pair.count > 0;
+  if (has_list) {
     keep_touching(due.block, pair, scratch());
     replace_candidates(due.pair, scratch(), due.block);
   }
   // Stones that are far apart touch no sooner than when they have come nearer by that much.
   const double range = std::max(apart, skin);
   search = {now.offset, now.turn, range, travel + range};
+  return has_list;
 }
 
 /// The block's candidates as the forces want them.
@@ -169,16 +172,17 @@ void list_candidates(const Model& model, const State& state, const Workspace& wo
 void refresh(const Model& model, const State& state, const Workspace& work, PairBlock& block,
              PairGeometry& geometry) {
   double least = std::numeric_limits<double>::infinity();
+  bool is_new = geometry.candidates.size() != block.keys.size();
   for (Index k = 0; k < block.pairs.size(); ++k) {
     PairSearch& search = geometry.search[k];
     const Index i = static_cast<Index>(block.pairs[k].i), j = static_cast<Index>(block.pairs[k].j);
     const double travel = work.travel[i] + work.travel[j];
-    if (travel > search.due) search_pair(model, state, work, {block, geometry, k});
+    if (travel > search.due) is_new |= search_pair(model, state, work, {block, geometry, k});
     least = std::min(least, search.due - travel);
   }
   // Two stones use up what is left the sooner the farther the fastest of all stones goes.
   geometry.quiet_until = work.way + 0.5 * least;
-  list_candidates(model, state, work, block, geometry);
+  if (is_new) list_candidates(model, state, work, block, geometry);
 }
 
 }  // namespace trackbed

@@ -189,7 +189,6 @@ void prefetch(const PairBlock& block, const PairGeometry& geometry) {
 int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
   PairBlock& block = state.pair_blocks[b];
   PairGeometry& geometry = work.pair_geometry[b];
-  if (b + 1 < state.pair_blocks.size()) prefetch(state.pair_blocks[b + 1], work.pair_geometry[b + 1]);
   if (work.way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
   int touching = 0;
   const Index n = geometry.candidates.size();
@@ -225,8 +224,12 @@ int patch_forces(const Model& model, State& state, Workspace& work, Index patch,
   std::fill(work.sums.begin() + work.first_sum_of_patch[patch],
             work.sums.begin() + work.first_sum_of_patch[patch + 1], ForceSum{});
   int touching = 0;
-  for (int b = work.first_block_of_patch[patch]; b < work.first_block_of_patch[patch + 1]; ++b)
-    touching += block_forces(model, state, work, static_cast<Index>(b), dt);
+  const Index end = static_cast<Index>(work.first_block_of_patch[patch + 1]);
+  for (Index b = static_cast<Index>(work.first_block_of_patch[patch]); b < end; ++b) {
+    // A block of another patch may be growing in the hands of another thread.
+    if (b + 1 < end) prefetch(state.pair_blocks[b + 1], work.pair_geometry[b + 1]);
+    touching += block_forces(model, state, work, b, dt);
+  }
   return touching;
 }
 

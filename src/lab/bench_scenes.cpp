@@ -1,0 +1,271 @@
+#include "lab/bench_scenes.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "io/files.h"
+#include "io/nearest.h"
+#include "lab/cyclic_box_case.h"
+#include "lab/kept_bed.h"
+#include "lab/run.h"
+
+namespace trackbed {
+namespace {
+
+// Stones settle without friction under raised gravity, as in the cyclic box. Local damping takes momentum
+// from falling stones that hit each other: high columns fall much faster with little of it. Two pieces of 2e7
+// N/m make a contact of 1e7 N/m.
+constexpr const char* plain_bed = R"toml(
+title = "Bed at rest in a box of planes"
+[stones]
+shapes = 1
+material = "stone"
+[materials.stone]
+kn = "2e7 N/m"
+ks = "2e7 N/m"
+friction = 0.5
+density = "2630 kg/m^3"
+[stones.grading]
+passing = ["0 %", "100 %"]
+[walls.box]
+kind = "box"
+material = "stone"
+[numerics]
+largest_travel = 0.1
+[[stages]]
+kind = "fill"
+density = 0.3
+[[stages]]
+kind = "settle"
+name = "fall"
+gravity = "100 m/s^2"
+friction = 0
+damping = 0.1
+unbalanced_ratio = 0.3
+[[stages]]
+kind = "settle"
+name = "pack"
+gravity = "100 m/s^2"
+friction = 0
+unbalanced_ratio = 0.03
+[[stages]]
+kind = "settle"
+name = "rest"
+[[stages]]
+kind = "hold"
+duration = "1e9 s"
+)toml";
+
+constexpr const char* one_size = "stones.grading.sieves=[\"45 mm\", \"45.000001 mm\"]";
+
+/// Stones in a box with a square floor of the given side that they would fill to the given height at a
+/// porosity of 0.4 [m].
+BenchScene plain(const std::string& name, const std::string& about, double side, double height,
+                 const std::vector<std::string>& stones) {
+  BenchScene scene;
+  scene.name = scene.bed = name;
+  scene.about = about;
+  scene.text = plain_bed;
+  scene.overrides = stones;
+  scene.overrides.push_back(fmt::format("walls.box.size=[\"{0} m\", \"{0} m\", \"{1} m\"]", side, height));
+  scene.side = side;
+  scene.time_step = 8e-6;
+  return scene;
+}
+
+BenchScene tiled(BenchScene bed, const std::string& name, const std::string& about, int nx, int ny) {
+  bed.name = name;
+  bed.about = about;
+  bed.tiles_x = nx;
+  bed.tiles_y = ny;
+  return bed;
+}
+
+/// The experiment of cases/cyclic-box with other stones; timed is its stage `cyclic`.
+BenchScene cyclic_box(const std::string& name, const std::string& pebbles,
+                      const std::vector<std::string>& stones) {
+  BenchScene scene;
+  scene.name = scene.bed = name;
+  scene.about = fmt::format("cyclic box under its load, {} a stone", pebbles);
+  scene.text = cyclic_box_case;
+  scene.overrides = stones;
+  scene.warm = 2000;
+  scene.steps = 2000;
+  return scene;
+}
+
+/// With so many pebbles a bed would take long to settle.
+BenchScene in_the_bed_of(const BenchScene& settled, BenchScene scene) {
+  scene.settled_as = std::make_shared<const BenchScene>(settled);
+  scene.about += fmt::format(", in the bed of {} come to rest anew", settled.name);
+  return scene;
+}
+
+std::vector<std::string> filled(std::string_view distance, double ratio) {
+  return {fmt::format("stones.distance={} deg", distance), fmt::format("stones.ratio={}", ratio)};
+}
+
+std::vector<BenchScene> make_scenes() {
+  const std::vector<std::string> balls{"stones.fidelity=ball",
+                                       "stones.grading.sieves=[\"22 mm\", \"62 mm\"]"};
+  const auto stones = [](std::string_view distance, double ratio) {
+    std::vector<std::string> all = filled(distance, ratio);
+    all.emplace_back(one_size);
+    return all;
+  };
+  const BenchScene w1 =
+      plain("w1", "20,000 balls, radius 11 to 31 mm, in a box of 0.6 m", 0.6, 4.4064, balls);
+  const BenchScene tile = plain("section", "", 0.6, 0.4418, stones("115", 0.35));
+  const BenchScene box_270 = cyclic_box("box-270", "about 270 pebbles", filled("154", 0.3));
+  return {
+      w1,
+      plain("w2", "2,000 clumps of 20 pebbles, 45 mm, in a box of 0.6 m", 0.6, 0.4418, stones("100", 0.35)),
+      plain("w2b", "500 clumps of 250 pebbles, 45 mm, in a box of 0.3 m", 0.3, 0.4418, stones("157", 0.3)),
+      tiled(tile, "section", "24,000 clumps of 26 pebbles: 12 beds of 2,000 side by side", 4, 3),
+      tiled(w1, "balls-100k", "100,000 balls: w1 5 times side by side", 5, 1),
+      tiled(w1, "balls-500k", "500,000 balls: w1 25 times side by side", 5, 5),
+      cyclic_box("box-1", "1 pebble", {"stones.fidelity=ball"}),
+      cyclic_box("box-20", "20 pebbles", filled("105", 0.4)),
+      cyclic_box("box-70", "about 70 pebbles", filled("128", 0.3)),
+      box_270,
+      in_the_bed_of(box_270, cyclic_box("box-1000", "about 1,000 pebbles", filled("167.5", 0.3))),
+      in_the_bed_of(box_270, cyclic_box("box-5000", "about 5,000 pebbles", filled("174", 0.3)))};
+}
+
+/// The experiment of a scene, with and without its stones' shapes, which may take minutes to fill.
+struct Experiment {
+  Simulation sim;
+  std::vector<NamedStage> stages;
+};
+
+Experiment experiment_of(const BenchScene& scene, bool with_shapes) {
+  std::vector<std::string> overrides = scene.overrides;
+  if (!with_shapes) overrides.emplace_back("stones.fidelity=ball");
+  const Document document = Document::from_text(scene.text, scene.name, overrides);
+  CaseInput input;
+  document.read(input);
+  return {make_simulation(document, input), stages_of(input)};
+}
+
+void run_stage(NamedStage& named, Simulation& sim, const BenchBeds& beds) {
+  beds.tell(named.name);
+  named.stage->open(sim);
+  sim.number_by_place();
+  while (!named.stage->finished(sim)) {
+    named.stage->control(sim);
+    sim.step();
+  }
+  named.stage->close(sim);
+}
+
+/// Finer stones have corners that lie in their neighbours. Local damping near 1 takes nearly all that such
+/// overlaps have stored while they open, so that no stone is thrown.
+void part_gently(Simulation& sim) {
+  const double damping = std::exchange(sim.model.local_damping, 0.999);
+  for (int k = 0; k < 1500; ++k) sim.step();
+  sim.model.local_damping = damping;
+}
+
+void need_bed(const BenchScene& scene, const BenchBeds& beds);
+
+/// The stones of the other scene are replaced by finer ones; then the stage that brought them to rest last is
+/// run once more. The frame of a shape is that of its mesh, whatever fills it, so that poses carry over.
+void take_over_bed(const BenchScene& scene, Experiment& experiment, const BenchBeds& beds) {
+  need_bed(*scene.settled_as, beds);
+  Simulation& sim = experiment.sim;
+  const std::vector<ClumpTemplate> shapes = sim.model.templates;
+  read_kept_bed(kept_bed(*scene.settled_as, beds.folder), sim);
+  if (sim.model.templates.size() != shapes.size())
+    throw RunError(scene.name + ": the bed it takes over has other shapes");
+  sim.model.templates = shapes;
+  sim.model.limits.domain.setEmpty();  // stones lie above the rim of the box
+  sim.changed();
+  part_gently(sim);
+  run_stage(experiment.stages[experiment.stages.size() - 2], sim, beds);
+}
+
+/// Makes the bed of a scene unless it is kept.
+void need_bed(const BenchScene& scene, const BenchBeds& beds) {
+  const std::filesystem::path file = kept_bed(scene, beds.folder);
+  if (std::filesystem::exists(file)) return;
+  make_folder(beds.folder);
+  beds.tell("shapes");
+  Experiment experiment = experiment_of(scene, true);
+  if (scene.settled_as)
+    take_over_bed(scene, experiment, beds);
+  else
+    for (std::size_t k = 0; k + 1 < experiment.stages.size(); ++k)
+      run_stage(experiment.stages[k], experiment.sim, beds);
+  write_kept_bed(experiment.sim, file);
+}
+
+}  // namespace
+
+const std::vector<BenchScene>& bench_scenes() {
+  static const std::vector<BenchScene> scenes = make_scenes();
+  return scenes;
+}
+
+const BenchScene& find_bench_scene(std::string_view name) {
+  const std::vector<BenchScene>& all = bench_scenes();
+  const auto found = std::ranges::find(all, name, &BenchScene::name);
+  if (found != all.end()) return *found;
+  std::vector<std::string> known;
+  for (const BenchScene& scene : all) known.push_back(scene.name);
+  throw InputError(
+      fmt::format("there is no bench scene called {}: {}", name, known_words(std::string(name), known)));
+}
+
+std::filesystem::path kept_bed(const BenchScene& scene, const std::filesystem::path& folder) {
+  Hash recipe;
+  recipe.add(std::string_view(scene.text));
+  for (const std::string& value : scene.overrides) recipe.add(std::string_view(value));
+  if (scene.settled_as) recipe.add(std::string_view(kept_bed(*scene.settled_as, "").string()));
+  return folder / fmt::format("{}-{:016x}.bed", scene.bed, recipe.value());
+}
+
+BenchRun start_bench(const BenchScene& scene, const BenchBeds& beds) {
+  need_bed(scene, beds);
+  auto [sim, stages] = experiment_of(scene, false);
+  read_kept_bed(kept_bed(scene, beds.folder), sim);
+  lay_tiles(sim, scene.tiles_x, scene.tiles_y);
+  sim.model.limits.domain.setEmpty();
+  if (scene.time_step > 0) sim.model.time_step.fixed = scene.time_step;
+  sim.number_by_place();
+  stages.back().stage->open(sim);
+  return {std::move(sim), std::move(stages.back().stage)};
+}
+
+void lay_tiles(Simulation& sim, int nx, int ny) {
+  // Distance between the walls that face along an axis.
+  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
+  const auto facing = [&](std::size_t w) {
+    return Vec3(sim.state.walls[w].pose.orientation * Vec3::UnitZ());
+  };
+  for (std::size_t w = 0; w < sim.state.walls.size(); ++w)
+    for (int axis = 0; axis < 2; ++axis) {
+      if (std::abs(facing(w)[axis]) < 0.9) continue;
+      low[axis] = std::min(low[axis], sim.state.walls[w].pose.position[axis]);
+      high[axis] = std::max(high[axis], sim.state.walls[w].pose.position[axis]);
+    }
+  const Clumps tile = sim.state.clumps;
+  for (int y = 0; y < ny; ++y)
+    for (int x = 0; x < nx; ++x) {
+      if (x == 0 && y == 0) continue;
+      const Vec3 shift(x * (high.x() - low.x()), y * (high.y() - low.y()), 0);
+      for (std::size_t k = 0; k < tile.id.size(); ++k)
+        add_clump(sim.model, sim.state, tile.shape[k], tile.scale[k], tile.material[k],
+                  {tile.position[k] + shift, tile.orientation[k]});
+    }
+  const Vec3 further((nx - 1) * (high.x() - low.x()), (ny - 1) * (high.y() - low.y()), 0);
+  for (std::size_t w = 0; w < sim.state.walls.size(); ++w)
+    for (int axis = 0; axis < 2; ++axis)
+      if (facing(w)[axis] < -0.9) sim.state.walls[w].pose.position[axis] += further[axis];
+}
+
+}  // namespace trackbed

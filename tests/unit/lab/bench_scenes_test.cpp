@@ -1,0 +1,139 @@
+#include "lab/bench_scenes.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <set>
+
+#include "io/files.h"
+#include "lab/kept_bed.h"
+#include "lab/measures/measures.h"
+
+namespace trackbed {
+namespace {
+
+namespace fs = std::filesystem;
+
+class BenchScenes : public ::testing::Test {
+ protected:
+  void SetUp() override { make_folder(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  BenchBeds beds() {
+    return {folder_, [this](const std::string& stage) { told_.push_back(stage); }};
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / fmt::format("trackbed_bench_{}", ::getpid());
+  std::vector<std::string> told_;
+};
+
+/// A ball on the floor and nothing else.
+void keep_one_ball(const fs::path& file) {
+  Simulation sim;
+  sim.model.materials = {{"stone", 1e6, 1e6, 0.5, 0, 2630}};
+  sim.model.templates.push_back(make_ball_template(0.02));
+  add_clump(sim.model, sim.state, 0, 1, 0, {{0, 0, 0.02}, Quat::Identity()});
+  write_kept_bed(sim, file);
+}
+
+TEST_F(BenchScenes, AreAllMadeOfCasesThatCanBeRun) {
+  std::set<std::string> names;
+  for (const BenchScene& scene : bench_scenes()) {
+    EXPECT_TRUE(names.insert(scene.name).second) << scene.name;
+    keep_one_ball(kept_bed(scene, folder_));
+    BenchRun run = start_bench(scene, beds());
+    EXPECT_EQ(run.sim.state.clumps.size(), scene.tiles_x * scene.tiles_y) << scene.name;
+    for (int k = 0; k < 3; ++k) run.step();
+    EXPECT_EQ(run.sim.state.step, 3);
+    if (scene.time_step > 0) {
+      EXPECT_EQ(run.sim.state.dt, scene.time_step);
+      EXPECT_EQ(run.sim.model.pairs(0, 0).kn, 1e7);
+    }
+  }
+  EXPECT_TRUE(told_.empty());
+}
+
+TEST_F(BenchScenes, SettleABedOnceAndKeepIt) {
+  BenchScene scene = find_bench_scene("w1");
+  scene.overrides.back() = "walls.box.size=[\"0.15 m\", \"0.15 m\", \"0.06 m\"]";
+  scene.overrides.emplace_back("materials.stone.kn=1e6 N/m");
+  BenchRun made = start_bench(scene, beds());
+  EXPECT_EQ(told_, (std::vector<std::string>{"shapes", "fill", "fall", "pack", "rest"}));
+  EXPECT_GT(made.sim.state.clumps.size(), 10);
+  told_.clear();
+  const BenchRun read = start_bench(scene, beds());
+  EXPECT_TRUE(told_.empty());
+  EXPECT_EQ(hash(read.sim.state), hash(made.sim.state));
+  // Shear forces are not kept: the bed finds them again within a few steps.
+  for (int k = 0; k < 3 * scene.warm; ++k) made.step();
+  EXPECT_LT(unbalanced_ratio(made.sim.model, made.sim.state), 0.01);
+}
+
+TEST_F(BenchScenes, FinerStonesTakeOverASettledBed) {
+  BenchScene coarse = find_bench_scene("w2b");
+  coarse.overrides.back() = "walls.box.size=[\"0.15 m\", \"0.15 m\", \"0.06 m\"]";
+  coarse.overrides.emplace_back("materials.stone.kn=1e6 N/m");
+  coarse.overrides.emplace_back("stones.distance=145 deg");
+  coarse.overrides.emplace_back("stones.ratio=0.4");
+  BenchScene fine = coarse;
+  fine.bed = "fine";
+  fine.overrides.emplace_back("stones.distance=155 deg");
+  fine.settled_as = std::make_shared<const BenchScene>(coarse);
+  const BenchRun a = start_bench(coarse, beds());
+  told_.clear();
+  const BenchRun b = start_bench(fine, beds());
+  EXPECT_EQ(told_, (std::vector<std::string>{"shapes", "rest"}));
+  EXPECT_GT(b.sim.model.templates[0].pebbles.size(), 1.5 * a.sim.model.templates[0].pebbles.size());
+  const Clumps &before = a.sim.state.clumps, &after = b.sim.state.clumps;
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_EQ(after.mass, before.mass);
+  // Finer corners push the stones apart a little, but throw none.
+  for (std::size_t k = 0; k < before.id.size(); ++k)
+    EXPECT_LT((after.position[k] - before.position[k]).norm(), 0.01) << k;
+}
+
+TEST_F(BenchScenes, AnotherRecipeIsAnotherBed) {
+  const BenchScene w1 = find_bench_scene("w1");
+  EXPECT_EQ(kept_bed(w1, folder_), kept_bed(find_bench_scene("balls-500k"), folder_));
+  BenchScene other = w1;
+  other.overrides.emplace_back("seed=2");
+  EXPECT_NE(kept_bed(w1, folder_), kept_bed(other, folder_));
+}
+
+TEST_F(BenchScenes, TilesRepeatTheBedAndMoveTheFarWalls) {
+  // Balls that touch both walls of a tile, and each other across the tile's edges when tiles lie side by
+  // side.
+  constexpr double side = 0.08, overlap = 1e-5;
+  Simulation sim;
+  sim.model.materials = {{"stone", 1e6, 1e6, 0.5, 0, 2630}};
+  sim.model.pairs = PairTable(sim.model.materials, LawKind::linear, {});
+  sim.model.templates.push_back(make_ball_template(0.02));
+  const auto wall = [&](const char* name, const Vec3& point, const Vec3& normal) {
+    add_wall(sim, {make_plane_wall(name, side), 0, {}}, {point, Quat::FromTwoVectors(Vec3::UnitZ(), normal)});
+  };
+  wall("floor", {0, 0, 0}, Vec3::UnitZ());
+  wall("left", {0, 0, 0}, Vec3::UnitX());
+  wall("right", {side, 0, 0}, -Vec3::UnitX());
+  wall("front", {0, 0, 0}, Vec3::UnitY());
+  wall("back", {0, side, 0}, -Vec3::UnitY());
+  for (const double x : {0.02 - overlap, side - 0.02 + overlap})
+    for (const double y : {0.02 - overlap, side - 0.02 + overlap})
+      add_clump(sim.model, sim.state, 0, 1, 0, {{x, y, 0.02 - overlap}, Quat::Identity()});
+  sim.changed();
+  const double overlap_of_tile = largest_overlap(sim);
+
+  lay_tiles(sim, 3, 2);
+  sim.changed();
+  EXPECT_EQ(sim.state.clumps.size(), 24);
+  EXPECT_NEAR(sim.state.walls[2].pose.position.x(), 3 * side, 1e-15);
+  EXPECT_NEAR(sim.state.walls[4].pose.position.y(), 2 * side, 1e-15);
+  EXPECT_EQ(sim.state.walls[1].pose.position, Vec3::Zero());
+  EXPECT_LT(largest_overlap(sim), 2 * overlap_of_tile + 1e-9);
+  // 24 on the floor, 4 + 4 at the sides across x, 6 + 6 across y; across edges of tiles 2 x 4 and 1 x 6.
+  const ContactCounts counts = contact_counts(sim);
+  EXPECT_EQ(counts.wall, 24 + 8 + 12);
+  EXPECT_EQ(counts.stone, 8 + 6);
+}
+
+}  // namespace
+}  // namespace trackbed
