@@ -99,17 +99,6 @@ void replace_candidates(Index pair, Scratch& s, PairBlock& block) {
   for (Index later = pair + 1; later < block.pairs.size(); ++later) block.pairs[later].first += more;
 }
 
-/// How near pebbles must be to become candidates of a pair [m]: a small distance keeps idle candidates out of
-/// the lists of stones that hardly move, a larger one spares fast stones a search at every step.
-double skin_of(const State& state, const Workspace& work, Index i, Index j) {
-  constexpr double lasts = 200, smallest = 0.1;  // steps; share of the largest skin
-  const Clumps& c = state.clumps;
-  const double speed = c.velocity[i].norm() + c.velocity[j].norm() +
-                       work.bound[i] * c.angular_velocity[i].norm() +
-                       work.bound[j] * c.angular_velocity[j].norm();
-  return std::clamp(lasts * state.planned_dt * speed, smallest * work.skin, work.skin);
-}
-
 /// A pair of a block that is due.
 struct DuePair {
   PairBlock& block;
@@ -128,11 +117,11 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
   const Relative now = relative_pose(c.position[i], c.orientation[i], c.position[j], c.orientation[j]);
   const double left = search.range - motion_since(search, now, work.bound[j]);
   if (left > nearly_used_up * search.range) {
-    search.due = travel + left;
+    due.geometry.due[due.pair] = travel + left;
     return false;
   }
   const double apart = now.offset.norm() - work.bound[i] - work.bound[j];
-  const double skin = skin_of(state, work, i, j);
+  const double skin = skin_of(state, work, speed_of(state, work, i) + speed_of(state, work, j));
   scratch().found.clear();
   if (apart <= skin)
     find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
@@ -144,7 +133,8 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
   }
   // Stones that are far apart touch no sooner than when they have come nearer by that much.
   const double range = std::max(apart, skin);
-  search = {now.offset, now.turn, range, travel + range};
+  search = {now.offset, now.turn, range};
+  due.geometry.due[due.pair] = travel + range;
   return has_list;
 }
 
@@ -174,11 +164,10 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
   double least = std::numeric_limits<double>::infinity();
   bool is_new = geometry.candidates.size() != block.keys.size();
   for (Index k = 0; k < block.pairs.size(); ++k) {
-    PairSearch& search = geometry.search[k];
     const Index i = static_cast<Index>(block.pairs[k].i), j = static_cast<Index>(block.pairs[k].j);
     const double travel = work.travel[i] + work.travel[j];
-    if (travel > search.due) is_new |= search_pair(model, state, work, {block, geometry, k});
-    least = std::min(least, search.due - travel);
+    if (travel > geometry.due[k]) is_new |= search_pair(model, state, work, {block, geometry, k});
+    least = std::min(least, geometry.due[k] - travel);
   }
   // Two stones use up what is left the sooner the farther the fastest of all stones goes.
   geometry.quiet_until = work.way + 0.5 * least;

@@ -1,6 +1,8 @@
 // How far the two bodies of a pair have moved against each other since their candidates were looked for.
 #pragma once
 
+#include <algorithm>
+
 #include "base/vec.h"
 #include "dem/workspace.h"
 
@@ -9,6 +11,20 @@ namespace trackbed {
 /// A pair is looked through again when less than this share of its skin is left, rather than measured each
 /// step.
 inline constexpr double nearly_used_up = 0.25;
+
+/// How near pebbles must be to become candidates of a pair [m]: a small distance keeps idle candidates out of
+/// the lists of bodies that hardly move, a larger one spares fast ones a search at every step. `speed`: sum
+/// of those of the bodies' farthest points [m/s].
+inline double skin_of(const State& state, const Workspace& work, double speed) {
+  constexpr double lasts = 200, smallest = 0.1;  // steps; share of the largest skin
+  return std::clamp(lasts * state.planned_dt * speed, smallest * work.skin, work.skin);
+}
+
+/// Speed of a stone's farthest point [m/s].
+inline double speed_of(const State& state, const Workspace& work, std::size_t clump) {
+  return state.clumps.velocity[clump].norm() +
+         work.bound[clump] * state.clumps.angular_velocity[clump].norm();
+}
 
 /// Pose of one body in the frame of another.
 struct Relative {

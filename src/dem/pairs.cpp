@@ -226,10 +226,13 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
     }
     blocks.back().pairs.push_back({i, j, static_cast<int>(blocks.back().keys.size()), 0});
     geometry.back().search.emplace_back();
+    geometry.back().due.push_back(-1);
     const auto found = old_pairs.find({i, j});
     if (!found) continue;
     carry(state.pair_blocks[found->first], found->second, blocks.back());
-    if (with_search) geometry.back().search.back() = work.pair_geometry[found->first].search[found->second];
+    if (!with_search) continue;
+    geometry.back().search.back() = work.pair_geometry[found->first].search[found->second];
+    geometry.back().due.back() = work.pair_geometry[found->first].due[found->second];
   }
   state.pair_blocks = std::move(blocks);
   work.pair_geometry = std::move(geometry);
@@ -261,6 +264,7 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
   work.wall_geometry.assign(state.wall_blocks.size(), {});
   for (Index b = 0; b < state.wall_blocks.size(); ++b) {
     work.wall_geometry[b].search.resize(state.wall_blocks[b].pairs.size());
+    work.wall_geometry[b].due.resize(state.wall_blocks[b].pairs.size(), -1);
     work.wall_geometry[b].candidates.resize(state.wall_blocks[b].keys.size());
   }
 

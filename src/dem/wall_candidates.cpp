@@ -28,14 +28,14 @@ double travel_of(const Workspace& work, const WallPair& p) {
 bool must_search(const State& state, const Workspace& work, const WallBlock& block, WallGeometry& geometry) {
   bool must = false;
   for (Index k = 0; k < block.pairs.size(); ++k) {
-    PairSearch& search = geometry.search[k];
+    const PairSearch& search = geometry.search[k];
     const WallPair& p = block.pairs[k];
     const double travel = travel_of(work, p);
-    if (travel <= search.due) continue;
+    if (travel <= geometry.due[k]) continue;
     const double left = search.range - motion_since(search, stone_seen_from_wall(state, p),
                                                     work.bound[static_cast<Index>(p.clump)]);
     if (left > nearly_used_up * search.range)
-      search.due = travel + left;
+      geometry.due[k] = travel + left;
     else
       must = true;
   }
@@ -46,7 +46,7 @@ bool must_search(const State& state, const Workspace& work, const WallBlock& blo
 void rest(const Workspace& work, const WallBlock& block, WallGeometry& geometry) {
   double least = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < block.pairs.size(); ++k)
-    least = std::min(least, geometry.search[k].due - travel_of(work, block.pairs[k]));
+    least = std::min(least, geometry.due[k] - travel_of(work, block.pairs[k]));
   geometry.quiet_until = work.way + work.wall_way + least;
 }
 
@@ -135,11 +135,16 @@ void refresh(const Model& model, const State& state, const Workspace& work, Wall
   for (Index k = 0; k < block.pairs.size(); ++k) {
     WallPair& p = block.pairs[k];
     const int first = static_cast<int>(lists.keys.size());
-    append_candidates(model, state, work.skin, block, p, lists);
+    const WallState& wall = state.walls[static_cast<Index>(p.wall)];
+    const double speed = speed_of(state, work, static_cast<Index>(p.clump)) + wall.velocity.norm() +
+                         model.walls[static_cast<Index>(p.wall)].shape.reach * wall.angular_velocity.norm();
+    const double skin = skin_of(state, work, speed);
+    append_candidates(model, state, skin, block, p, lists);
     p.first = first;
     p.count = static_cast<int>(lists.keys.size()) - first;
     const Relative seen = stone_seen_from_wall(state, p);
-    geometry.search[k] = {seen.offset, seen.turn, work.skin, travel_of(work, p) + work.skin};
+    geometry.search[k] = {seen.offset, seen.turn, skin};
+    geometry.due[k] = travel_of(work, p) + skin;
   }
   block.keys = lists.keys;
   block.memory = lists.memory;

@@ -12,12 +12,11 @@
 
 namespace trackbed {
 
-/// When the candidates of a pair were last looked for, and when to look again.
+/// Where the bodies of a pair were when its candidates were last looked for.
 struct PairSearch {
   Vec3 offset = Vec3::Zero();    // of body 2 in the frame of body 1, then
   Quat turn = Quat::Identity();  // of body 2 relative to body 1, then
   double range = -1;             // motion since then that the list allows; negative: there is none yet [m]
-  double due = -1;               // sum of both bodies' travel at which their motion must be measured [m]
 };
 
 /// Two pebbles that may touch.
@@ -31,6 +30,7 @@ struct Candidate {
 /// Beside a PairBlock.
 struct PairGeometry {
   std::vector<PairSearch> search;
+  std::vector<double> due;            // sum of both clumps' travel at which their motion must be measured [m]
   std::vector<Candidate> candidates;  // beside the keys
   int first_pair = 0;                 // number of its first pair, through all blocks
   double quiet_until = -1;            // no pair is due before Workspace::way has come this far [m]
@@ -46,6 +46,7 @@ struct WallCandidate {
 /// Beside a WallBlock.
 struct WallGeometry {
   std::vector<PairSearch> search;
+  std::vector<double> due;  // sum of clump's and wall's travel at which their motion must be measured [m]
   std::vector<WallCandidate> candidates;
   std::vector<int> facets;
   double quiet_until = -1;  // of Workspace::way + wall_way [m]

@@ -87,7 +87,7 @@ std::set<Key> candidates(const Simulation& sim, bool only_touching) {
   return keys;
 }
 
-// Stones at rest have a tenth of the skin, walls the whole.
+// Stones at rest have a tenth of the skin.
 RC_GTEST_PROP(Search, CandidatesAreThePebblesWithinTheSkin, (std::uint64_t seed)) {
   Simulation sim = heap(seed);
   sim.changed();
