@@ -17,7 +17,9 @@ inline constexpr double nearly_used_up = 0.25;
 /// of those of the bodies' farthest points [m/s].
 inline double skin_of(const State& state, const Workspace& work, double speed) {
   constexpr double lasts = 200, smallest = 0.1;  // steps; share of the largest skin
-  return std::clamp(lasts * state.planned_dt * speed, smallest * work.skin, work.skin);
+  // Before there are stones the planned step is endless, and the way not a number when they come at rest.
+  const double way = lasts * state.planned_dt * speed;
+  return way < work.skin ? std::max(way, smallest * work.skin) : work.skin;
 }
 
 /// Speed of a stone's farthest point [m/s].

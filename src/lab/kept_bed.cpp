@@ -1,6 +1,8 @@
 #include "lab/kept_bed.h"
 
 #include <fmt/format.h>
+#include <algorithm>
+#include <numeric>
 
 #include <iterator>
 #include <sstream>
@@ -108,7 +110,10 @@ void write_kept_bed(const Simulation& sim, const std::filesystem::path& file) {
     for (const Pebble& p : t.pebbles) fmt::format_to(out, "{} {}\n", words(p.centre), p.radius);
   }
   const Clumps& c = sim.state.clumps;
-  for (std::size_t k = 0; k < c.id.size(); ++k)
+  std::vector<std::size_t> by_id(c.id.size());
+  std::iota(by_id.begin(), by_id.end(), std::size_t{0});
+  std::ranges::sort(by_id, {}, [&](std::size_t k) { return c.id[k]; });
+  for (const std::size_t k : by_id)
     fmt::format_to(out, "stone {} {} {} {}\n", c.shape[k], c.scale[k],
                    words(Pose{c.position[k], c.orientation[k]}), c.material[k]);
   for (std::size_t w = 0; w < sim.state.walls.size(); ++w) {

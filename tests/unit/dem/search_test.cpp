@@ -99,6 +99,15 @@ RC_GTEST_PROP(Search, CandidatesAreThePebblesWithinTheSkin, (std::uint64_t seed)
   RC_ASSERT(candidates(sim, true) == near_ones(sim, 0.0));
 }
 
+TEST(Search, FindsTheFirstStonesOfAnEmptyScene) {
+  Simulation sim = scenes::make_scene({});
+  sim.changed();
+  scenes::add_ball(sim, Vec3::Zero());
+  scenes::add_ball(sim, {0.0399, 0, 0});
+  sim.changed();
+  EXPECT_EQ(sim.work.touching, 1);
+}
+
 // Whatever was refreshed and whatever was not: every pebble in touch has a contact, after each of many steps.
 TEST(Search, NoContactIsMissedWhileStonesFlyAndTurn) {
   int met = 0;
