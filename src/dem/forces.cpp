@@ -19,14 +19,6 @@ struct Four {
   std::array<ContactMemory*, Lanes::size> memory;
 };
 
-template <class Get>
-Vec3Of<Lanes> gather(const Get& get, Lanes& fourth) {
-  Lanes a = get(0), b = get(1), c = get(2), d = get(3);
-  transpose(a, b, c, d);
-  fourth = d;
-  return {a, b, c};
-}
-
 /// Two pebbles in each lane: where they are.
 struct Places {
   Vec3Of<Lanes> shift;    // from centre of mass to centre of mass [m]
@@ -199,17 +191,12 @@ int block_forces(const Model& model, State& state, Workspace& work, Index b, dou
       f.candidate[k] = &geometry.candidates[at];
       f.memory[k] = &block.memory[at];
     }
-    // One law and one set of properties at a time: almost always all four.
-    unsigned left = (1u << std::min<Index>(Lanes::size, n - first)) - 1u;
-    while (left != 0) {
-      const int properties = f.candidate[static_cast<Index>(__builtin_ctz(left))]->properties;
-      unsigned alike = 0;
-      for (Index k = 0; k < Lanes::size; ++k)
-        alike |= static_cast<unsigned>(f.candidate[k]->properties == properties) << k;
-      const ContactProperties& p = model.pairs[properties];
-      with_law(p.law, [&]<class Law>() { touching += respond<Law>(f, left & alike, p, dt, work); });
-      left &= ~alike;
-    }
+    by_properties(
+        lanes_of(n - first), [&](Index k) { return f.candidate[k]->properties; },
+        [&](int properties, unsigned wanted) {
+          const ContactProperties& p = model.pairs[properties];
+          with_law(p.law, [&]<class Law>() { touching += respond<Law>(f, wanted, p, dt, work); });
+        });
   }
   return touching;
 }

@@ -9,6 +9,34 @@
 
 namespace trackbed {
 
+/// The rows that get(0) to get(3) give, turned into lanes.
+template <class Get>
+Vec3Of<Lanes> gather(const Get& get, Lanes& fourth) {
+  Lanes a = get(0), b = get(1), c = get(2), d = get(3);
+  transpose(a, b, c, d);
+  fourth = d;
+  return {a, b, c};
+}
+
+/// One law and one set of properties at a time: visits the lanes of `wanted` that have the same number of
+/// properties together; almost always all four.
+template <class PropertiesOf, class Visit>
+void by_properties(unsigned wanted, const PropertiesOf& properties_of, const Visit& visit) {
+  while (wanted != 0) {
+    const int properties = properties_of(static_cast<std::size_t>(__builtin_ctz(wanted)));
+    unsigned alike = 0;
+    for (std::size_t k = 0; k < Lanes::size; ++k)
+      alike |= static_cast<unsigned>(properties_of(k) == properties) << k;
+    visit(properties, wanted & alike);
+    wanted &= ~alike;
+  }
+}
+
+/// The lanes that hold something when `left` are left.
+inline unsigned lanes_of(std::size_t left) {
+  return left < Lanes::size ? (1u << left) - 1u : (1u << Lanes::size) - 1u;
+}
+
 struct Response {
   Vec3Of<Lanes> force;   // on body 2 [N]
   Vec3Of<Lanes> moment;  // on body 2 about the point from which the lever is measured [N m]

@@ -158,39 +158,22 @@ void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& 
 /// Four touches; the last one stands in for those that are missing.
 using Four = std::array<const Touch*, Lanes::size>;
 
-template <class Get>
-Vec3Of<Lanes> gather(const Four& f, const Get& get, Lanes& fourth) {
-  Lanes a = get(*f[0]), b = get(*f[1]), c = get(*f[2]), d = get(*f[3]);
-  transpose(a, b, c, d);
-  fourth = d;
-  return {a, b, c};
-}
-
 /// Lets four touches respond, those in the lanes of `wanted`.
 template <class Law>
 void respond(const Four& f, unsigned wanted, const Touches& s, const ContactProperties& p, double dt,
              WallResult* results) {
-  const auto motion = [&](const Touch& t) -> const PairMotion& {
-    return s.motions[static_cast<Index>(t.pair)];
-  };
+  const auto motion = [&](Index n) -> const PairMotion& { return s.motions[static_cast<Index>(f[n]->pair)]; };
   Lanes unused;
   ContactKinematicsOf<Lanes> k;
   k.dt = dt;
-  k.normal = gather(
-      f, [](const Touch& t) { return t.normal; }, k.overlap);
-  const Vec3Of<Lanes> centre = gather(
-      f, [](const Touch& t) { return t.centre; }, k.radius);
+  k.normal = gather([&](Index n) { return f[n]->normal; }, k.overlap);
+  const Vec3Of<Lanes> centre = gather([&](Index n) { return f[n]->centre; }, k.radius);
   const Vec3Of<Lanes> lever = centre + (k.radius - Lanes(0.5) * k.overlap) * k.normal;
-  k.spin = gather(
-      f, [&](const Touch& t) { return motion(t).spin; }, unused);
-  k.velocity = gather(
-      f, [&](const Touch& t) { return motion(t).velocity; }, k.reduced_mass);
+  k.spin = gather([&](Index n) { return motion(n).spin; }, unused);
+  k.velocity = gather([&](Index n) { return motion(n).velocity; }, k.reduced_mass);
   k.velocity += k.spin.cross(lever);
-  k.mean_twist = gather(
-                     f, [&](const Touch& t) { return motion(t).mean_spin; }, unused)
-                     .dot(k.normal);
-  const Vec3Of<Lanes> shift = gather(
-      f, [&](const Touch& t) { return motion(t).shift; }, unused);
+  k.mean_twist = gather([&](Index n) { return motion(n).mean_spin; }, unused).dot(k.normal);
+  const Vec3Of<Lanes> shift = gather([&](Index n) { return motion(n).shift; }, unused);
   const Response r =
       respond_with<Law>(k, p, lever, {f[0]->memory, f[1]->memory, f[2]->memory, f[3]->memory}, wanted);
   const Vec3Of<Lanes> on_wall = r.moment - shift.cross(r.force);
@@ -213,17 +196,12 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
   for (Index first = 0; first < n; first += Lanes::size) {
     Four f;
     for (Index k = 0; k < Lanes::size; ++k) f[k] = &s.touches[std::min(first + k, n - 1)];
-    const auto properties_of = [&](Index k) { return s.motions[static_cast<Index>(f[k]->pair)].properties; };
-    unsigned left = (1u << std::min<Index>(Lanes::size, n - first)) - 1u;
-    while (left != 0) {
-      const int properties = properties_of(static_cast<Index>(__builtin_ctz(left)));
-      unsigned alike = 0;
-      for (Index k = 0; k < Lanes::size; ++k)
-        alike |= static_cast<unsigned>(properties_of(k) == properties) << k;
-      const ContactProperties& p = model.pairs[properties];
-      with_law(p.law, [&]<class Law>() { respond<Law>(f, left & alike, s, p, dt, results); });
-      left &= ~alike;
-    }
+    by_properties(
+        lanes_of(n - first), [&](Index k) { return s.motions[static_cast<Index>(f[k]->pair)].properties; },
+        [&](int properties, unsigned wanted) {
+          const ContactProperties& p = model.pairs[properties];
+          with_law(p.law, [&]<class Law>() { respond<Law>(f, wanted, s, p, dt, results); });
+        });
   }
 }
 
