@@ -133,6 +133,9 @@ class OldPairs {
     return std::nullopt;
   }
 
+  /// Blocks before this one are not asked for any more.
+  Index block() const { return block_; }
+
  private:
   const std::vector<Block>& blocks_;
   Index block_ = 0, pair_ = 0;
@@ -162,6 +165,13 @@ void list_by_second(const Pairs& pairs, Index n, Chosen&& chosen, std::vector<in
   for (Index p = 0; p < pairs.size(); ++p)
     if (chosen(p))
       entries[static_cast<Index>(next[static_cast<Index>(pairs[p].second)]++)] = static_cast<int>(p);
+}
+
+/// Gives back what the growing of the lists has left over.
+void fit(PairBlock& block) {
+  block.pairs.shrink_to_fit();
+  block.keys.shrink_to_fit();
+  block.memory.shrink_to_fit();
 }
 
 /// Where each pair lies, and which pairs each clump has.
@@ -219,8 +229,10 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
            (i != last && blocks.back().pairs.size() >= PairBlock::full);
   };
   OldPairs old_pairs(state.pair_blocks);
+  Index released = 0;
   for (const auto& [i, j] : near) {
     if (begins_block(i)) {
+      if (!blocks.empty()) fit(blocks.back());
       blocks.emplace_back();
       geometry.emplace_back();
     }
@@ -228,6 +240,11 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
     geometry.back().search.emplace_back();
     geometry.back().due.push_back(-1);
     const auto found = old_pairs.find({i, j});
+    // Old and new pairs of a large bed at once would be half of all its memory.
+    for (; released < old_pairs.block(); ++released) {
+      state.pair_blocks[released] = {};
+      if (with_search) work.pair_geometry[released] = {};
+    }
     if (!found) continue;
     carry(state.pair_blocks[found->first], found->second, blocks.back());
     if (!with_search) continue;
