@@ -88,11 +88,13 @@ TEST(same, stones_in_another_order_move_alike) {
   std::reverse(c.orientation.begin(), c.orientation.end());
   std::reverse(c.scale.begin(), c.scale.end());
   std::reverse(c.mass.begin(), c.mass.end());
+  int most = 0;  // contacts at a time
   for (int k = 0; k < 1300; ++k) {
     a.step();
     b.step();
+    most = std::max(most, a.work.touching);
   }
-  EXPECT_GT(a.work.touching, 10);
+  EXPECT_GT(most, 10);
   for (std::size_t k = 0; k < 64; ++k)  // to rounding, which collisions have not yet made grow
     EXPECT_LT((a.state.clumps.position[k] - c.position[63 - k]).norm(), 1e-10) << k;
 }
