@@ -85,20 +85,18 @@ Summary run_whole(const std::vector<std::string>& set, int threads, const fs::pa
 // The whole test at full load with some 430 pebbles a stone, on the default stones and on scans.
 TEST(cyclic_box, long_whole_run_is_sound_and_the_same_for_any_number_of_threads) {
   const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box-whole";
-  const std::vector<std::string> calm{"stages.before.unbalanced_ratio=1e-4"};
-  const Summary two = run_whole(calm, 2, out);
+  const Summary two = run_whole({}, 2, out);
   expect_sound(two, out);
-  EXPECT_EQ(run_whole(calm, 1, out).state_hash, two.state_hash);
-  EXPECT_EQ(run_whole(calm, 4, out).state_hash, two.state_hash);
+  EXPECT_EQ(run_whole({}, 1, out).state_hash, two.state_hash);
+  EXPECT_EQ(run_whole({}, 4, out).state_hash, two.state_hash);
 }
 
 TEST(cyclic_box, long_whole_run_on_scans_is_sound) {
   if (!fs::exists(TRACKBED_STONES)) GTEST_SKIP() << "the folder of scans is not here: " << TRACKBED_STONES;
   const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box-scans";
-  expect_sound(run_whole({std::string("stones.files=\"") + TRACKBED_STONES + "/epfl_stonepacking3d/*.obj\"",
-                          "stages.before.unbalanced_ratio=1e-4"},
-                         2, out),
-               out);
+  expect_sound(
+      run_whole({std::string("stones.files=\"") + TRACKBED_STONES + "/epfl_stonepacking3d/*.obj\""}, 2, out),
+      out);
 }
 
 }  // namespace
