@@ -17,6 +17,13 @@ using Index = std::size_t;
 struct Four {
   std::array<const Candidate*, Lanes::size> candidate;
   std::array<ContactMemory*, Lanes::size> memory;
+
+  /// The motion of stone i or j in each lane.
+  auto motions(const Workspace& work, int Candidate::*stone) const {
+    return [this, &work, stone](Index k) -> const StoneMotion& {
+      return work.motion[static_cast<Index>(candidate[k]->*stone)];
+    };
+  }
 };
 
 /// Two pebbles in each lane: where they are.
@@ -42,12 +49,7 @@ Vec3Of<Lanes> place(const Motion& motion, const std::array<const Row*, Lanes::si
 }
 
 Places places_of(const Workspace& work, const Four& f) {
-  const auto motion_i = [&](Index k) -> const StoneMotion& {
-    return work.motion[static_cast<Index>(f.candidate[k]->i)];
-  };
-  const auto motion_j = [&](Index k) -> const StoneMotion& {
-    return work.motion[static_cast<Index>(f.candidate[k]->j)];
-  };
+  const auto motion_i = f.motions(work, &Candidate::i), motion_j = f.motions(work, &Candidate::j);
   std::array<const Row*, Lanes::size> a, b;
   for (Index k = 0; k < a.size(); ++k) {
     a[k] = &work.pebbles[static_cast<Index>(f.candidate[k]->a)];
@@ -71,12 +73,7 @@ struct Motions {
 };
 
 Motions motions_of(const Workspace& work, const Four& f, const Vec3Of<Lanes>& shift) {
-  const auto motion_i = [&](Index k) -> const StoneMotion& {
-    return work.motion[static_cast<Index>(f.candidate[k]->i)];
-  };
-  const auto motion_j = [&](Index k) -> const StoneMotion& {
-    return work.motion[static_cast<Index>(f.candidate[k]->j)];
-  };
+  const auto motion_i = f.motions(work, &Candidate::i), motion_j = f.motions(work, &Candidate::j);
   Lanes mass_i, mass_j, unused;
   const Vec3Of<Lanes> v_i = gather([&](Index k) { return motion_i(k).velocity; }, mass_i);
   const Vec3Of<Lanes> v_j = gather([&](Index k) { return motion_j(k).velocity; }, mass_j);

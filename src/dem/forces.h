@@ -8,14 +8,14 @@
 namespace trackbed {
 
 /// Refreshes the candidates that are due and lets every touching contact respond, for a step of length dt
-/// [s]. One clump pair is summed by one thread, each clump sums its pairs in ascending order of the other:
-/// the same bits for any number of threads.
+/// [s]. One patch is summed by one thread, its contacts in ascending order: the same bits for any number of
+/// threads.
 void contact_forces(const Model& model, State& state, Workspace& work, double dt);
 
 /// The part of it that one block of wall pairs does; returns the number of contacts.
 int wall_block_forces(const Model& model, State& state, Workspace& work, std::size_t block, double dt);
 
-/// Sums the pairs' results on the stones and walls.
+/// Adds what came from other patches and from walls on the stones, and sums on the walls.
 void gather_forces(const Model& model, State& state, Workspace& work, double dt);
 
 }  // namespace trackbed
