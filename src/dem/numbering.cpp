@@ -57,6 +57,30 @@ void swap_bodies(ContactMemory& m) {
   m.rolling = -m.rolling;
 }
 
+bool same_bodies(const ClumpPair& a, const ClumpPair& b) {
+  return a.i == b.i && a.j == b.j;
+}
+bool same_bodies(const WallPair& a, const WallPair& b) {
+  return a.clump == b.clump && a.wall == b.wall;
+}
+
+/// One block with the contacts in the order given, those of one pair in a row. `pair_of` tells a contact's
+/// pair; a Contact has a key and a memory.
+template <class Block, class Contact, class PairOf>
+std::vector<Block> one_block(const std::vector<Contact>& contacts, const PairOf& pair_of) {
+  std::vector<Block> blocks(contacts.empty() ? 0 : 1);
+  for (const Contact& c : contacts) {
+    Block& block = blocks.front();
+    auto pair = pair_of(c);
+    pair.first = static_cast<int>(block.keys.size());
+    if (block.pairs.empty() || !same_bodies(block.pairs.back(), pair)) block.pairs.push_back(pair);
+    ++block.pairs.back().count;
+    block.keys.push_back(c.key);
+    block.memory.push_back(c.memory);
+  }
+  return blocks;
+}
+
 /// One contact between stones, out of its block.
 struct Loose {
   int i, j;
@@ -82,40 +106,29 @@ void renumber_contacts(State& state, const std::vector<int>& number) {
   std::sort(contacts.begin(), contacts.end(), [](const Loose& a, const Loose& b) {
     return std::tie(a.i, a.j, a.key.a, a.key.b) < std::tie(b.i, b.j, b.key.a, b.key.b);
   });
-  state.pair_blocks.assign(contacts.empty() ? 0 : 1, {});
-  for (const Loose& c : contacts) {
-    PairBlock& block = state.pair_blocks.front();
-    if (block.pairs.empty() || block.pairs.back().i != c.i || block.pairs.back().j != c.j)
-      block.pairs.push_back({c.i, c.j, static_cast<int>(block.keys.size()), 0});
-    ++block.pairs.back().count;
-    block.keys.push_back(c.key);
-    block.memory.push_back(c.memory);
-  }
+  state.pair_blocks = one_block<PairBlock>(contacts, [](const Loose& c) {
+    return ClumpPair{c.i, c.j, 0, 0};
+  });
 }
 
+/// One contact with a wall, out of its block.
+struct LooseAtWall {
+  int wall, clump, key;
+  WallMemory memory;
+};
+
 void renumber_wall_contacts(State& state, const std::vector<int>& number) {
-  struct LooseAtWall {
-    int wall, clump, key;
-    const WallMemory* memory;
-  };
   std::vector<LooseAtWall> contacts;
-  const std::vector<WallBlock> old = std::move(state.wall_blocks);
-  for (const WallBlock& block : old)
+  for (const WallBlock& block : state.wall_blocks)
     for (const WallPair& p : block.pairs)
       for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k)
-        contacts.push_back({p.wall, number[static_cast<Index>(p.clump)], block.keys[k], &block.memory[k]});
+        contacts.push_back({p.wall, number[static_cast<Index>(p.clump)], block.keys[k], block.memory[k]});
   std::sort(contacts.begin(), contacts.end(), [](const LooseAtWall& a, const LooseAtWall& b) {
     return std::tie(a.wall, a.clump, a.key) < std::tie(b.wall, b.clump, b.key);
   });
-  state.wall_blocks.assign(contacts.empty() ? 0 : 1, {});
-  for (const LooseAtWall& c : contacts) {
-    WallBlock& block = state.wall_blocks.front();
-    if (block.pairs.empty() || block.pairs.back().wall != c.wall || block.pairs.back().clump != c.clump)
-      block.pairs.push_back({c.clump, c.wall, static_cast<int>(block.keys.size()), 0});
-    ++block.pairs.back().count;
-    block.keys.push_back(c.key);
-    block.memory.push_back(*c.memory);
-  }
+  state.wall_blocks = one_block<WallBlock>(contacts, [](const LooseAtWall& c) {
+    return WallPair{c.clump, c.wall, 0, 0};
+  });
 }
 
 }  // namespace

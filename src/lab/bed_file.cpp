@@ -118,7 +118,9 @@ Pose fit(const std::vector<Pebble>& from, const std::vector<Pebble>& to) {
   return {b - turn * a, Quat(turn)};
 }
 
-void add_box(Simulation& sim, double side) {
+}  // namespace
+
+void add_open_box(Simulation& sim, double side) {
   const auto wall = [&](const char* name, const Vec3& point, const Vec3& normal) {
     add_wall(sim, {make_plane_wall(name, side), 0, {}}, {point, Quat::FromTwoVectors(Vec3::UnitZ(), normal)});
   };
@@ -129,14 +131,12 @@ void add_box(Simulation& sim, double side) {
   wall("back", {0, side, 0}, -Vec3::UnitY());
 }
 
-}  // namespace
-
 Simulation read_bed(const std::filesystem::path& file, double side, double density) {
   const auto stones = read_spheres(file);
   Simulation sim;
   sim.model.materials = {{"stone", 2e7, 2e7, 0.5, 0, density}};
   sim.model.pairs = PairTable(sim.model.materials, LawKind::linear, {});
-  add_box(sim, side);
+  add_open_box(sim, side);
   std::map<std::vector<double>, std::pair<int, std::size_t>> known;  // radii -> template, first stone
   std::vector<Pose> frames;
   for (std::size_t s = 0; s < stones.size(); ++s) {

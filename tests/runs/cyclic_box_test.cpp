@@ -8,6 +8,7 @@
 
 #include "expected.h"
 #include "io/files.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -71,7 +72,8 @@ void expect_sound(const Summary& summary, const fs::path& out) {
 }
 
 TEST(cyclic_box, short_form_gives_what_the_case_expects) {
-  const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box";
+  const TemporaryFolder folder;
+  const fs::path& out = folder.path;
   expect_sound(run_and_compare("cyclic-box", out), out);
 }
 
@@ -84,7 +86,8 @@ Summary run_whole(const std::vector<std::string>& set, int threads, const fs::pa
 
 // The whole test at full load with some 430 pebbles a stone, on the default stones and on scans.
 TEST(cyclic_box, long_whole_run_is_sound_and_the_same_for_any_number_of_threads) {
-  const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box-whole";
+  const TemporaryFolder folder;
+  const fs::path& out = folder.path;
   const Summary two = run_whole({}, 2, out);
   expect_sound(two, out);
   EXPECT_EQ(run_whole({}, 1, out).state_hash, two.state_hash);
@@ -93,7 +96,8 @@ TEST(cyclic_box, long_whole_run_is_sound_and_the_same_for_any_number_of_threads)
 
 TEST(cyclic_box, long_whole_run_on_scans_is_sound) {
   if (!fs::exists(TRACKBED_STONES)) GTEST_SKIP() << "the folder of scans is not here: " << TRACKBED_STONES;
-  const fs::path out = fs::temp_directory_path() / "trackbed-cyclic-box-scans";
+  const TemporaryFolder folder;
+  const fs::path& out = folder.path;
   expect_sound(
       run_whole({std::string("stones.files=\"") + TRACKBED_STONES + "/epfl_stonepacking3d/*.obj\""}, 2, out),
       out);

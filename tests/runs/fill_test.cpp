@@ -5,6 +5,7 @@
 
 #include "io/files.h"
 #include "lab/run.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -36,9 +37,8 @@ porosity = 0.8
 )";
 
 TEST(fill, twice_leaves_no_overlap) {
-  const auto folder = std::filesystem::temp_directory_path() / "trackbed-fill-twice";
-  std::filesystem::create_directories(folder);
-  const auto file = folder / "case.toml";
+  const TemporaryFolder folder;
+  const auto file = folder.path / "case.toml";
   write_file(file, two_fills);
   const Document document(file, {});
   CaseInput experiment;

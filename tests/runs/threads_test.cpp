@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "lab/run.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -31,8 +32,9 @@ std::uint64_t hash_of_run(int threads, const std::vector<std::string>& more = {}
   const Document document(TRACKBED_ROOT "/cases/cyclic-box/case.toml", set);
   CaseInput experiment;
   document.read(experiment);
+  const TemporaryFolder folder;
   RunOptions options;
-  options.out = std::filesystem::temp_directory_path() / "trackbed-threads";
+  options.out = folder.path;
   options.threads = threads;
   options.quiet = true;
   return run(document, experiment, options).state_hash;

@@ -8,22 +8,19 @@
 #include "base/error.h"
 #include "geom/mass_properties.h"
 #include "shapes.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
 
 class MeshIo : public ::testing::Test {
  protected:
-  std::filesystem::path file(const std::string& name) const {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    const auto folder = std::filesystem::temp_directory_path() / "trackbed_mesh_io" / test->name();
-    std::filesystem::create_directories(folder);
-    return folder / name;
-  }
+  std::filesystem::path file(const std::string& name) const { return folder_.path / name; }
   std::filesystem::path with(const std::string& name, const std::string& text) const {
     std::ofstream(file(name), std::ios::binary) << text;
     return file(name);
   }
+  TemporaryFolder folder_;
   static std::string contents(const std::filesystem::path& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};

@@ -2,24 +2,23 @@
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <limits>
 
 #include "base/error.h"
 #include "io/files.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
 
 class Csv : public ::testing::Test {
  protected:
-  std::filesystem::path path_ =
-      std::filesystem::temp_directory_path() / ("trackbed_csv_" + std::to_string(::getpid()) + ".csv");
+  TemporaryFolder folder_;
+  std::filesystem::path path_ = folder_.path / "table.csv";
   std::vector<Column> columns_ = {
       {"time", Dimension::time}, {"sleeper, force", Dimension::force}, {"porosity"}};
-  void TearDown() override { std::filesystem::remove(path_); }
 };
 
 TEST_F(Csv, UnitsInTheHeaderAndShortNumbers) {

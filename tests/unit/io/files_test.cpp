@@ -1,9 +1,9 @@
 #include "io/files.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "base/error.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -12,9 +12,9 @@ namespace fs = std::filesystem;
 
 class Files : public ::testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("trackbed_files_" + std::to_string(::getpid()));
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path;
   void SetUp() override { make_folder(folder_ / "a" / "b"); }
-  void TearDown() override { fs::remove_all(folder_); }
 };
 
 TEST_F(Files, WhatIsWrittenIsRead) {

@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "geom/primitives.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -99,7 +100,8 @@ TEST(picture, upper_sides_are_brighter) {
 }
 
 TEST(picture, file_reads_back) {
-  const auto path = std::filesystem::temp_directory_path() / "trackbed_picture_test.png";
+  const TemporaryFolder folder;
+  const auto path = folder.path / "picture.png";
   Picture picture(64, 48);
   picture.draw_sphere(Vec3::Zero(), 0.5, red);
   picture.write_png(path);

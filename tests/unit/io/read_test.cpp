@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "sample_input.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -329,12 +330,9 @@ TEST(Read, ErrorsFoundLaterPointAtTheKey) {
 class ReadPaths : public ::testing::Test {
  protected:
   void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("trackbed_read_" + std::to_string(::getpid())) / "case [1]";
     std::filesystem::create_directories(folder_ / "stones");
     for (const char* name : {"b.obj", "a.obj", "c.stl"}) std::ofstream(folder_ / "stones" / name) << "x";
   }
-  void TearDown() override { std::filesystem::remove_all(folder_.parent_path()); }
 
   std::string error_of_file(const std::string& text) {
     std::ofstream(folder_ / "case.toml") << text;
@@ -346,7 +344,8 @@ class ReadPaths : public ::testing::Test {
     return {};
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder temporary_;
+  std::filesystem::path folder_ = temporary_.path / "case [1]";
   Case input_;
 };
 

@@ -1,7 +1,6 @@
 #include "io/vtk.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <cstring>
@@ -9,6 +8,7 @@
 
 #include "base/error.h"
 #include "io/files.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -71,9 +71,8 @@ std::vector<T> array_in(const std::string& xml, std::string_view where, std::str
 
 class Vtk : public ::testing::Test {
  protected:
-  fs::path folder_ = fs::temp_directory_path() / ("trackbed_vtk_" + std::to_string(::getpid()));
-  void SetUp() override { make_folder(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path;
   std::string written(const PolyData& data) {
     write_vtp(folder_ / "f.vtp", data);
     return read_file(folder_ / "f.vtp");

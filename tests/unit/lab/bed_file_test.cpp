@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
 #include "base/error.h"
 #include "base/rng.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -17,8 +17,8 @@ namespace fs = std::filesystem;
 
 class BedFile : public ::testing::Test {
  protected:
-  void TearDown() override { fs::remove(file_); }
-  fs::path file_ = fs::temp_directory_path() / fmt::format("trackbed_bed_{}.txt", ::getpid());
+  TemporaryFolder folder_;
+  fs::path file_ = folder_.path / "bed.txt";
 };
 
 /// Places of a stone's pebbles [m].

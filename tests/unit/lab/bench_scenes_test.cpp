@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <map>
 #include <set>
 
 #include "io/files.h"
+#include "lab/bed_file.h"
 #include "lab/kept_bed.h"
 #include "lab/measures/measures.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -18,13 +19,12 @@ namespace fs = std::filesystem;
 
 class BenchScenes : public ::testing::Test {
  protected:
-  void SetUp() override { make_folder(folder_); }
-  void TearDown() override { fs::remove_all(folder_); }
   BenchBeds beds() {
     return {folder_, [this](const std::string& stage) { told_.push_back(stage); }};
   }
 
-  fs::path folder_ = fs::temp_directory_path() / fmt::format("trackbed_bench_{}", ::getpid());
+  TemporaryFolder temporary_;
+  fs::path folder_ = temporary_.path;
   std::vector<std::string> told_;
 };
 
@@ -112,14 +112,7 @@ TEST_F(BenchScenes, TilesRepeatTheBedAndMoveTheFarWalls) {
   sim.model.materials = {{"stone", 1e6, 1e6, 0.5, 0, 2630}};
   sim.model.pairs = PairTable(sim.model.materials, LawKind::linear, {});
   sim.model.templates.push_back(make_ball_template(0.02));
-  const auto wall = [&](const char* name, const Vec3& point, const Vec3& normal) {
-    add_wall(sim, {make_plane_wall(name, side), 0, {}}, {point, Quat::FromTwoVectors(Vec3::UnitZ(), normal)});
-  };
-  wall("floor", {0, 0, 0}, Vec3::UnitZ());
-  wall("left", {0, 0, 0}, Vec3::UnitX());
-  wall("right", {side, 0, 0}, -Vec3::UnitX());
-  wall("front", {0, 0, 0}, Vec3::UnitY());
-  wall("back", {0, side, 0}, -Vec3::UnitY());
+  add_open_box(sim, side);
   for (const double x : {0.02 - overlap, side - 0.02 + overlap})
     for (const double y : {0.02 - overlap, side - 0.02 + overlap})
       add_clump(sim.model, sim.state, 0, 1, 0, {{x, y, 0.02 - overlap}, Quat::Identity()});

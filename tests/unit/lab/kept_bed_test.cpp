@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 
@@ -10,6 +9,7 @@
 #include "base/rng.h"
 #include "geom/primitives.h"
 #include "io/files.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 
 class KeptBed : public ::testing::Test {
  protected:
-  void TearDown() override { fs::remove(file_); }
-
   /// Walls and bodies, without stones.
   static Simulation empty() {
     Simulation sim;
@@ -52,7 +50,8 @@ class KeptBed : public ::testing::Test {
     return sim;
   }
 
-  fs::path file_ = fs::temp_directory_path() / fmt::format("trackbed_kept_{}.bed", ::getpid());
+  TemporaryFolder folder_;
+  fs::path file_ = folder_.path / "stones.bed";
 };
 
 TEST_F(KeptBed, ComesBackToTheSameBits) {

@@ -2,7 +2,6 @@
 #include "lab/run.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <limits>
 #include <sstream>
@@ -10,6 +9,7 @@
 #include "base/error.h"
 #include "io/files.h"
 #include "scenes/scene.h"
+#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -19,8 +19,6 @@ namespace fs = std::filesystem;
 class Run : public ::testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(out_);
-    make_folder(out_);
     scenes::Setting setting;
     setting.gravity = {0, 0, -9.81};
     setting.damping = 0.7;
@@ -34,7 +32,6 @@ class Run : public ::testing::Test {
     record_.every = 1e-3;
     record_.measures = {"weight"};
   }
-  void TearDown() override { fs::remove_all(out_); }
 
   void run(std::vector<NamedStage> stages) {
     Recorder recorder(sim_, record_, out_);
@@ -48,7 +45,8 @@ class Run : public ::testing::Test {
     return all;
   }
 
-  fs::path out_ = fs::temp_directory_path() / ("trackbed_run_" + std::to_string(::getpid()));
+  TemporaryFolder folder_;
+  fs::path out_ = folder_.path;
   Simulation sim_;
   RecordInput record_;
   Summary summary_;
