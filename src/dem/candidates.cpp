@@ -142,7 +142,9 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
 void list_candidates(const Model& model, const State& state, const Workspace& work, const PairBlock& block,
                      PairGeometry& geometry) {
   const Clumps& c = state.clumps;
+  const auto is_centred = [&](int pebble) { return xyz(work.pebbles[static_cast<Index>(pebble)]).isZero(0); };
   geometry.candidates.clear();
+  geometry.is_centred = true;
   for (Index p = 0; p < block.pairs.size(); ++p) {
     const ClumpPair& pair = block.pairs[p];
     if (pair.count == 0) continue;
@@ -151,9 +153,11 @@ void list_candidates(const Model& model, const State& state, const Workspace& wo
     const int first_b = work.first_pebble[static_cast<Index>(c.shape[j])];
     const int sum_j = work.sum_of_pair[static_cast<Index>(geometry.first_pair) + p];
     const int properties = model.pairs.index(c.material[i], c.material[j]);
-    for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k)
-      geometry.candidates.push_back(
-          {pair.i, pair.j, first_a + block.keys[k].a, first_b + block.keys[k].b, sum_j, properties});
+    for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
+      const int a = first_a + block.keys[k].a, b = first_b + block.keys[k].b;
+      geometry.candidates.push_back({pair.i, pair.j, a, b, sum_j, properties});
+      geometry.is_centred = geometry.is_centred && is_centred(a) && is_centred(b);
+    }
   }
 }
 

@@ -64,12 +64,12 @@ template <class Real>
 Vec3Of<Real> carry_along(const Vec3Of<Real>& stored, const Vec3Of<Real>& old_normal,
                          const Vec3Of<Real>& normal, const Real& twist) {
   const Real one = 1.0;
-  const Vec3Of<Real> axis = old_normal.cross(normal);  // length sin of the angle
-  const Real cosine = old_normal.dot(normal);
-  const Real along = axis.dot(stored) / (one + cosine);
-  const Vec3Of<Real> tilted = cosine * stored + axis.cross(stored) + along * axis;
   const Real t = Real(0.5) * twist * (one + twist * twist * Real(1.0 / 12.0));  // tan(twist/2), fifth order
-  const Real shrink = one / (one + t * t);
+  const Real a = one + old_normal.dot(normal), b = one + t * t;
+  const Real both = one / (a * b);  // one division for 1/a and 1/b
+  // A vector across the old normal needs no more than this of Rodrigues' formula.
+  const Vec3Of<Real> tilted = stored - (stored.dot(normal) * (b * both)) * (old_normal + normal);
+  const Real shrink = a * both;
   const Vec3Of<Real> turned =
       ((one - t * t) * shrink) * tilted + (Real(2.0) * t * shrink) * normal.cross(tilted);
   return turned - turned.dot(normal) * normal;

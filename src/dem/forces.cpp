@@ -6,6 +6,7 @@
 #include "dem/laws/table.h"
 #include "dem/open_contact.h"
 #include "dem/respond.h"
+#include "dem/rotation.h"
 #include "dem/search.h"
 
 namespace trackbed {
@@ -17,6 +18,7 @@ using Index = std::size_t;
 struct Four {
   std::array<const Candidate*, Lanes::size> candidate;
   std::array<ContactMemory*, Lanes::size> memory;
+  bool is_centred;  // as PairGeometry has it: nothing needs to be turned
 
   /// The motion of stone i or j in each lane.
   auto motions(const Workspace& work, int Candidate::*stone) const {
@@ -39,13 +41,11 @@ struct Places {
 template <class Motion>
 Vec3Of<Lanes> place(const Motion& motion, const std::array<const Row*, Lanes::size>& pebble,
                     const Lanes& scale, Lanes& radius) {
-  Lanes unused;
   const Vec3Of<Lanes> body = gather([&](Index k) { return *pebble[k]; }, radius) * scale;
   radius *= scale;
-  Vec3Of<Lanes> world = gather([&](Index k) { return motion(k).axes[0]; }, unused) * body.x();
-  world += gather([&](Index k) { return motion(k).axes[1]; }, unused) * body.y();
-  world += gather([&](Index k) { return motion(k).axes[2]; }, unused) * body.z();
-  return world;
+  Lanes w;
+  const Vec3Of<Lanes> v = gather([&](Index k) { return motion(k).turn; }, w);
+  return rotated<Lanes>({w, v.x(), v.y(), v.z()}, body);
 }
 
 Places places_of(const Workspace& work, const Four& f) {
@@ -59,8 +59,18 @@ Places places_of(const Workspace& work, const Four& f) {
   Lanes scale_i, scale_j, radius_b;
   const Vec3Of<Lanes> x_i = gather([&](Index k) { return motion_i(k).position; }, scale_i);
   p.shift = gather([&](Index k) { return motion_j(k).position; }, scale_j) - x_i;
-  p.centre = place(motion_i, a, scale_i, p.radius_a);
-  p.between = p.shift + place(motion_j, b, scale_j, radius_b) - p.centre;
+  if (f.is_centred) {
+    const auto radii = [](const auto& pebble) {
+      return Lanes((*pebble[0])[3], (*pebble[1])[3], (*pebble[2])[3], (*pebble[3])[3]);
+    };
+    p.radius_a = scale_i * radii(a);
+    radius_b = scale_j * radii(b);
+    p.centre = Vec3Of<Lanes>::Zero();
+    p.between = p.shift;
+  } else {
+    p.centre = place(motion_i, a, scale_i, p.radius_a);
+    p.between = p.shift + place(motion_j, b, scale_j, radius_b) - p.centre;
+  }
   p.distance2 = p.between.squaredNorm();
   p.reach = p.radius_a + radius_b;
   return p;
@@ -175,7 +185,7 @@ void prefetch(const PairBlock& block, const PairGeometry& geometry) {
   lines(block.memory);
 }
 
-int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
+[[gnu::flatten]] int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
   PairBlock& block = state.pair_blocks[b];
   PairGeometry& geometry = work.pair_geometry[b];
   if (work.way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
@@ -183,6 +193,7 @@ int block_forces(const Model& model, State& state, Workspace& work, Index b, dou
   const Index n = geometry.candidates.size();
   for (Index first = 0; first < n; first += Lanes::size) {
     Four f;
+    f.is_centred = geometry.is_centred;
     for (Index k = 0; k < Lanes::size; ++k) {
       const Index at = std::min(first + k, n - 1);
       f.candidate[k] = &geometry.candidates[at];

@@ -46,12 +46,59 @@ Real chord(const TurnOf<Real>& before, const TurnOf<Real>& after) {
   return Real(2.0) * sqrt(turn.squaredNorm());
 }
 
+/// How a stone turns.
+template <class Real>
+struct Turning {
+  Vec3Of<Real> angular_momentum;
+  Vec3Of<Real> spin = Vec3Of<Real>::Zero();
+  TurnOf<Real> turn;
+  Real damping_loss;
+};
+
+/// Changes an angular momentum by the moment over `kick_time`, damped in the axes of `moment`, which are
+/// principal.
+template <class Real>
+Vec3Of<Real> kick_turning(const Vec3Of<Real>& moment, const Vec3Of<Real>& momentum,
+                          const Vec3Of<Real>& mobility, double alpha, double kick_time, Real& damping_loss) {
+  const Vec3Of<Real> spin = momentum.cwiseProduct(mobility);
+  Vec3Of<Real> after = spin;
+  damping_loss += kick<Real>(moment, mobility, alpha, kick_time, after);
+  return Real(kick_time) * damped_vector(moment, spin, alpha);
+}
+
+/// One step of turning. Damping of the moment acts in the principal frame; without it the angular momentum is
+/// kept as it is.
+template <class Real>
+void turn_freely(Turning<Real>& t, const Vec3Of<Real>& moment, const Vec3Of<Real>& mobility, double alpha,
+                 double kick_time, double dt) {
+  if (alpha > 0) {
+    const Mat3Of<Real> r = matrix_of(t.turn);
+    const Vec3Of<Real> body_moment = r.transpose() * moment,
+                       body_momentum = r.transpose() * t.angular_momentum;
+    t.angular_momentum +=
+        r * kick_turning<Real>(body_moment, body_momentum, mobility, alpha, kick_time, t.damping_loss);
+  } else {
+    t.angular_momentum += Real(kick_time) * moment;
+  }
+  t.turn = rotated_freely(t.turn, t.angular_momentum, mobility, dt);
+  t.spin = spin_of<Real>(matrix_of(t.turn), mobility, t.angular_momentum);
+}
+
+/// The same for a stone whose principal moments are equal: all axes are principal, those of the world too.
+template <class Real>
+void turn_evenly(Turning<Real>& t, const Vec3Of<Real>& moment, const Vec3Of<Real>& mobility, double alpha,
+                 double kick_time, double dt) {
+  t.angular_momentum +=
+      kick_turning<Real>(moment, t.angular_momentum, mobility, alpha, kick_time, t.damping_loss);
+  t.turn = rotated_evenly(t.turn, t.angular_momentum, mobility.x(), dt);
+  t.spin = mobility.x() * t.angular_momentum;
+}
+
 /// Four stones on their way: a stone in each lane.
 struct Movers {
-  Vec3Of<Lanes> inertia, position, velocity, angular_momentum, spin, force, moment;
-  TurnOf<Lanes> turn;
-  Lanes mass, bound, travel, damping_loss;
-  Mat3Of<Lanes> rotation;
+  Vec3Of<Lanes> inertia, position, velocity, force, moment;
+  Turning<Lanes> turning;
+  Lanes mass, bound, travel;
 };
 
 /// One step of four stones; returns the lengths of way of their farthest points [m].
@@ -59,33 +106,23 @@ Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
   const double alpha = model.local_damping;
   const Vec3Of<Lanes> gravity(model.gravity.x(), model.gravity.y(), model.gravity.z());
   const Vec3Of<Lanes> mobility = Vec3Of<Lanes>::Constant(Lanes(1.0) / m.mass);
-  const Vec3Of<Lanes> turning = m.inertia.cwiseInverse();
-  m.damping_loss += kick<Lanes>(m.force + m.mass * gravity, mobility, alpha, kick_time, m.velocity);
+  m.turning.damping_loss += kick<Lanes>(m.force + m.mass * gravity, mobility, alpha, kick_time, m.velocity);
   m.position += Lanes(dt) * m.velocity;
 
-  // Damping of the moment acts in the principal frame; without it the angular momentum is kept as it is.
-  if (alpha > 0) {
-    const Mat3Of<Lanes> r = matrix_of(m.turn);
-    const Vec3Of<Lanes> moment = r.transpose() * m.moment;
-    const Vec3Of<Lanes> body_momentum = r.transpose() * m.angular_momentum;
-    const Vec3Of<Lanes> spin = body_momentum.cwiseProduct(turning);
-    Vec3Of<Lanes> after = spin;
-    m.damping_loss += kick<Lanes>(moment, turning, alpha, kick_time, after);
-    m.angular_momentum += Lanes(kick_time) * (r * damped_vector(moment, spin, alpha));
-  } else {
-    m.angular_momentum += Lanes(kick_time) * m.moment;
-  }
-  const TurnOf<Lanes> before = m.turn;
+  const Vec3Of<Lanes> ease = m.inertia.cwiseInverse();
+  const TurnOf<Lanes> before = m.turning.turn;
   const LaneMask even = m.inertia.x() == m.inertia.y() && m.inertia.y() == m.inertia.z();
-  if (any(!even)) m.turn = rotated_freely(before, m.angular_momentum, turning, dt);
+  Turning<Lanes> evenly = m.turning;
+  if (any(!even)) turn_freely(m.turning, m.moment, ease, alpha, kick_time, dt);
   if (any(even)) {
-    const TurnOf<Lanes> turned = rotated_evenly(before, m.angular_momentum, turning.x(), dt);
-    for (std::size_t k = 0; k < 4; ++k) m.turn[k] = select(even, turned[k], m.turn[k]);
+    turn_evenly(evenly, m.moment, ease, alpha, kick_time, dt);
+    m.turning.angular_momentum = select(even, evenly.angular_momentum, m.turning.angular_momentum);
+    m.turning.spin = select(even, evenly.spin, m.turning.spin);
+    m.turning.damping_loss = select(even, evenly.damping_loss, m.turning.damping_loss);
+    for (std::size_t k = 0; k < 4; ++k) m.turning.turn[k] = select(even, evenly.turn[k], m.turning.turn[k]);
   }
-  m.rotation = matrix_of(m.turn);
-  m.spin = spin_of<Lanes>(m.rotation, turning, m.angular_momentum);
 
-  const Lanes way = Lanes(dt) * sqrt(m.velocity.squaredNorm()) + m.bound * chord(before, m.turn);
+  const Lanes way = Lanes(dt) * sqrt(m.velocity.squaredNorm()) + m.bound * chord(before, m.turning.turn);
   m.travel += way;
   return way;
 }
@@ -117,14 +154,14 @@ struct Quartet {
 };
 
 /// Moves one quartet; returns the longest way of its stones [m].
-double move_quartet(const Model& model, State& state, Workspace& work, const Quartet& q, double kick_time,
-                    double dt) {
+[[gnu::flatten]] double move_quartet(const Model& model, State& state, Workspace& work, const Quartet& q,
+                                     double kick_time, double dt) {
   Clumps& c = state.clumps;
   Movers m;
   m.inertia = q.load(c.inertia);
   m.position = q.load(c.position);
   m.velocity = q.load(c.velocity);
-  m.angular_momentum = q.load(c.angular_momentum);
+  m.turning.angular_momentum = q.load(c.angular_momentum);
   m.force = q.load(c.force);
   m.moment = q.load(c.moment);
   m.mass = q.load(c.mass);
@@ -133,30 +170,28 @@ double move_quartet(const Model& model, State& state, Workspace& work, const Qua
   std::array<Lanes, 4> turn;  // x, y, z, w as Eigen stores them
   for (Index k = 0; k < 4; ++k) turn[k] = Lanes::load(c.orientation[q.at[k]].coeffs().data());
   transpose(turn[0], turn[1], turn[2], turn[3]);
-  m.turn = {turn[3], turn[0], turn[1], turn[2]};
-  for (Index k = 0; k < 4; ++k) m.damping_loss.pack[static_cast<int>(k)] = c.losses[q.at[k]].damping;
+  m.turning.turn = {turn[3], turn[0], turn[1], turn[2]};
+  for (Index k = 0; k < 4; ++k) m.turning.damping_loss.pack[static_cast<int>(k)] = c.losses[q.at[k]].damping;
 
   const Lanes ways = move(model, m, kick_time, dt);
 
   q.store(m.position, c.position);
   q.store(m.velocity, c.velocity);
-  q.store(m.angular_momentum, c.angular_momentum);
-  q.store(m.spin, c.angular_velocity);
+  q.store(m.turning.angular_momentum, c.angular_momentum);
+  q.store(m.turning.spin, c.angular_velocity);
   q.store(m.travel, work.travel);
-  std::array<Row, 4> axes[3], position{m.position.x(), m.position.y(), m.position.z(), q.load(c.scale)},
-      velocity{m.velocity.x(), m.velocity.y(), m.velocity.z(), m.mass},
-      spin{m.spin.x(), m.spin.y(), m.spin.z(), 0.0};
+  const Vec3Of<Lanes>& w = m.turning.spin;
+  std::array<Row, 4> position{m.position.x(), m.position.y(), m.position.z(), q.load(c.scale)},
+      velocity{m.velocity.x(), m.velocity.y(), m.velocity.z(), m.mass}, spin{w.x(), w.y(), w.z(), 0.0};
   const auto to_rows = [](std::array<Row, 4>& r) { transpose(r[0], r[1], r[2], r[3]); };
-  for (int k = 0; k < 3; ++k) axes[k] = {m.rotation(0, k), m.rotation(1, k), m.rotation(2, k), 0.0};
-  for (auto* rows : {&axes[0], &axes[1], &axes[2], &position, &velocity, &spin}) to_rows(*rows);
-  turn = {m.turn[1], m.turn[2], m.turn[3], m.turn[0]};
-  to_rows(turn);
+  turn = {m.turning.turn[1], m.turning.turn[2], m.turning.turn[3], m.turning.turn[0]};
+  for (auto* rows : {&position, &velocity, &spin, &turn}) to_rows(*rows);
   double way = 0;
   for (Index k = 0; k < static_cast<Index>(q.count); ++k) {
     const Index at = q.at[k];
     turn[k].store(c.orientation[at].coeffs().data());
-    c.losses[at].damping = m.damping_loss[static_cast<int>(k)];
-    work.motion[at] = {position[k], velocity[k], spin[k], {axes[0][k], axes[1][k], axes[2][k]}};
+    c.losses[at].damping = m.turning.damping_loss[static_cast<int>(k)];
+    work.motion[at] = {position[k], velocity[k], spin[k], turn[k]};
     way = std::max(way, ways[static_cast<int>(k)]);
   }
   return way;

@@ -312,11 +312,8 @@ void list_pebbles(const Model& model, Workspace& work) {
 }
 
 StoneMotion motion_of(const Clumps& clumps, Index c) {
-  const Mat3 axes = clumps.orientation[c].toRotationMatrix();
-  return {row_of(clumps.position[c], clumps.scale[c]),
-          row_of(clumps.velocity[c], clumps.mass[c]),
-          row_of(clumps.angular_velocity[c]),
-          {row_of(axes.col(0)), row_of(axes.col(1)), row_of(axes.col(2))}};
+  return {row_of(clumps.position[c], clumps.scale[c]), row_of(clumps.velocity[c], clumps.mass[c]),
+          row_of(clumps.angular_velocity[c]), Row::load(clumps.orientation[c].coeffs().data())};
 }
 
 /// Skin and margin that suit the stones, where the user gave none; docs/numerics.md.

@@ -40,6 +40,14 @@ Mat3Of<Real> matrix_of(const TurnOf<Real>& q) {
   return r;
 }
 
+/// A vector carried from the principal axes to the world.
+template <class Real>
+Vec3Of<Real> rotated(const TurnOf<Real>& q, const Vec3Of<Real>& v) {
+  const Vec3Of<Real> axis(q[1], q[2], q[3]);
+  const Vec3Of<Real> half = axis.cross(v), across = half + half;
+  return v + q[0] * across + axis.cross(across);
+}
+
 template <class Real>
 void normalize(TurnOf<Real>& q) {
   const Real shrink = Real(1.0) / sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);

@@ -137,7 +137,7 @@ int steps_for(const TimeStepRule& rule, const Pace& pace, double dt) {
 DiagonalStiffness stiffness_of(const Model& model, const State& state, const Workspace& work, int clump) {
   DiagonalStiffness k;
   const Index c = static_cast<Index>(clump);
-  const Mat3 axes = work.motion[c].rotation();
+  const Mat3 axes = state.clumps.orientation[c].toRotationMatrix();
   const auto add_pair = [&](Index pair, bool is_second) {
     const PairPlace place = work.pair_places[pair];
     const PairBlock& block = state.pair_blocks[static_cast<Index>(place.block)];

@@ -207,7 +207,8 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
 
 }  // namespace
 
-int wall_block_forces(const Model& model, State& state, Workspace& work, std::size_t b, double dt) {
+[[gnu::flatten]] int wall_block_forces(const Model& model, State& state, Workspace& work, std::size_t b,
+                                       double dt) {
   thread_local Touches s;
   WallBlock& block = state.wall_blocks[b];
   WallGeometry& geometry = work.wall_geometry[b];
@@ -221,7 +222,8 @@ int wall_block_forces(const Model& model, State& state, Workspace& work, std::si
     const Vec3 shift = state.walls[w].pose.position - state.clumps.position[c];
     s.motions.push_back(motion_of(work.motion[c], shift, model.walls[w], state.walls[w]));
     s.motions.back().properties = model.pairs.index(state.clumps.material[c], model.walls[w].material);
-    const WallFrame f{model.walls[w].shape, work.motion[c].rotation(), work.wall_rotation[w], shift};
+    const WallFrame f{model.walls[w].shape, state.clumps.orientation[c].toRotationMatrix(),
+                      work.wall_rotation[w], shift};
     find_touches(f, pair, geometry, model.pairs[s.motions.back().properties], dt, block, s,
                  results[k].losses);
   }

@@ -32,6 +32,7 @@ struct PairGeometry {
   std::vector<PairSearch> search;
   std::vector<double> due;            // sum of both clumps' travel at which their motion must be measured [m]
   std::vector<Candidate> candidates;  // beside the keys
+  bool is_centred = false;            // each candidate's pebbles stand in the centres of their stones
   int first_pair = 0;                 // number of its first pair, through all blocks
   double quiet_until = -1;            // no pair is due before Workspace::way has come this far [m]
 };
@@ -54,16 +55,10 @@ struct WallGeometry {
 
 /// A stone as its contacts see it: rows of four numbers.
 struct alignas(64) StoneMotion {
-  Row position;             // and the scale on the template's lengths
-  Row velocity;             // and the mass
-  Row spin;                 // and 0
-  std::array<Row, 3> axes;  // columns of the rotation matrix, body axes to world, and 0
-
-  Mat3 rotation() const {
-    Mat3 r;
-    for (int k = 0; k < 3; ++k) r.col(k) = xyz(axes[static_cast<std::size_t>(k)]);
-    return r;
-  }
+  Row position;  // and the scale on the template's lengths
+  Row velocity;  // and the mass
+  Row spin;      // and 0
+  Row turn;      // principal axes to world: the unit quaternion x, y, z, w
 };
 
 /// Sum of what contacts do to a clump.

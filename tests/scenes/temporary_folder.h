@@ -14,8 +14,8 @@ namespace trackbed {
 struct TemporaryFolder {
   const std::filesystem::path path = [] {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    return std::filesystem::temp_directory_path() / (std::string("trackbed.") + test->test_suite_name() + "." +
-                                                     test->name() + "." + std::to_string(::getpid()));
+    return std::filesystem::temp_directory_path() / (std::string("trackbed.") + test->test_suite_name() +
+                                                     "." + test->name() + "." + std::to_string(::getpid()));
   }();
   TemporaryFolder() { std::filesystem::create_directories(path); }
   ~TemporaryFolder() {

@@ -7,8 +7,8 @@
 
 #include "base/error.h"
 #include "geom/mass_properties.h"
-#include "shapes.h"
 #include "scenes/temporary_folder.h"
+#include "shapes.h"
 
 namespace trackbed {
 namespace {

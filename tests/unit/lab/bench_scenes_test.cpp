@@ -92,8 +92,15 @@ TEST_F(BenchScenes, FinerStonesTakeOverASettledBed) {
   };
   const auto before = places(a.sim.state.clumps), after = places(b.sim.state.clumps);
   ASSERT_EQ(after.size(), before.size());
-  // Finer corners push the stones apart a little, but throw none.
-  for (const auto& [id, place] : before) EXPECT_LT((after.at(id) - place).norm(), 0.01) << id;
+  // Finer corners push the stones apart a little; one or two on top may roll over, but none is thrown.
+  constexpr double stone = 0.05;  // [m], about its size
+  double sum = 0;
+  for (const auto& [id, place] : before) {
+    const double way = (after.at(id) - place).norm();
+    EXPECT_LT(way, stone) << id;
+    sum += way;
+  }
+  EXPECT_LT(sum / static_cast<double>(before.size()), 0.2 * stone);
 }
 
 TEST_F(BenchScenes, AnotherRecipeIsAnotherBed) {
