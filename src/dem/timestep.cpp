@@ -169,15 +169,23 @@ DiagonalStiffness stiffness_of_wall(const Model& model, const State& state, cons
   return k;
 }
 
+namespace {
+
+/// Of two limits of stones the shorter; of equal ones that of the first stone, whoever is asked first.
+StableStep shorter(const StableStep& a, const StableStep& b) {
+  return b.dt < a.dt || (b.dt == a.dt && b.clump < a.clump) ? b : a;
+}
+#pragma omp declare reduction(shorter:StableStep \
+                              : omp_out = shorter(omp_out, omp_in)) initializer(omp_priv = omp_orig)
+
+}  // namespace
+
 StableStep stable_step(const Model& model, const State& state, const Workspace& work) {
   StableStep step{std::numeric_limits<double>::infinity(), -1, false, 0};
   const Clumps& c = state.clumps;
-  std::vector<double> dt(c.id.size());
-#pragma omp parallel for schedule(static) if (c.size() > 64)
+#pragma omp parallel for schedule(static) reduction(shorter : step) if (c.size() > 64)
   for (int i = 0; i < c.size(); ++i)
-    dt[static_cast<Index>(i)] = limit_of_clump(model, state, work, static_cast<Index>(i));
-  for (Index i = 0; i < dt.size(); ++i)
-    if (dt[i] < step.dt) step = {dt[i], static_cast<int>(i), false, 0};
+    step = shorter(step, {limit_of_clump(model, state, work, static_cast<Index>(i)), i, false, 0});
   for (Index w = 0; w < model.walls.size(); ++w) {
     if (!model.walls[w].body || !state.walls[w].present) continue;
     const double limit = limit_of_body(model, state, work, w);
