@@ -41,7 +41,7 @@ double kinetic_energy(const Model& model, const State& state, Index i, double& l
   const double half = 0.5 * state.dt;
   const Vec3 v = half_kicked(c.velocity[i], c.force[i] + c.mass[i] * model.gravity, Vec3::Constant(c.mass[i]),
                              model.local_damping, half, lost);
-  const Mat3 r = c.orientation[i].toRotationMatrix();
+  const Mat3 r = damping_axes(c.orientation[i], c.inertia[i]);
   const Vec3 spin = (r.transpose() * c.angular_momentum[i]).cwiseQuotient(c.inertia[i]);
   const Vec3 w =
       half_kicked(spin, r.transpose() * c.moment[i], c.inertia[i], model.local_damping, half, lost);

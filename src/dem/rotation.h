@@ -114,11 +114,22 @@ inline Quat quat_of(const TurnOf<double>& q) {
   return {q[0], q[1], q[2], q[3]};
 }
 
+/// Whether all axes are principal.
+inline bool is_even(const Vec3& inertia) {
+  return inertia[0] == inertia[1] && inertia[1] == inertia[2];
+}
+
+/// Axes in which the moment on a stone is damped, as columns: its principal ones, or those of the world when
+/// all are.
+inline Mat3 damping_axes(const Quat& q, const Vec3& inertia) {
+  return is_even(inertia) ? Mat3(Mat3::Identity()) : q.toRotationMatrix();
+}
+
 /// For one body, whatever its inertia.
 inline void rotate_freely(Quat& q, const Vec3& angular_momentum, const Vec3& inertia, double dt) {
-  const bool is_even = inertia[0] == inertia[1] && inertia[1] == inertia[2];
-  q = quat_of(is_even ? rotated_evenly(turn_of(q), angular_momentum, 1.0 / inertia[0], dt)
-                      : rotated_freely<double>(turn_of(q), angular_momentum, inertia.cwiseInverse(), dt));
+  q = quat_of(is_even(inertia)
+                  ? rotated_evenly(turn_of(q), angular_momentum, 1.0 / inertia[0], dt)
+                  : rotated_freely<double>(turn_of(q), angular_momentum, inertia.cwiseInverse(), dt));
 }
 
 }  // namespace trackbed
