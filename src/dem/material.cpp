@@ -32,6 +32,12 @@ PairTable::PairTable(const std::vector<Material>& materials, LawKind law, const 
   }
 }
 
+PairTable PairTable::with_friction_up_to(double friction) const {
+  PairTable table = *this;
+  for (ContactProperties& p : table.table_) p.friction = std::min(p.friction, friction);
+  return table;
+}
+
 double PairTable::stiffest(int material) const {
   double k = 0;
   for (int other = 0; other < n_; ++other)

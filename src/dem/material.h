@@ -63,6 +63,9 @@ class PairTable {
   int index(int a, int b) const { return a < b ? a * n_ + b : b * n_ + a; }
   const ContactProperties& operator[](int index) const { return table_[static_cast<std::size_t>(index)]; }
 
+  /// The same pairs with no more friction than this.
+  PairTable with_friction_up_to(double friction) const;
+
   /// Largest normal or shear stiffness a piece of this material can meet [N/m].
   double stiffest(int material) const;
 

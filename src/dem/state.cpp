@@ -60,15 +60,47 @@ void set_motion(State& state, int clump, const Vec3& velocity, const Vec3& angul
   c.angular_momentum[i] = r * (r.transpose() * angular_velocity).cwiseProduct(c.inertia[i]);
 }
 
-void rescale(const Model& model, State& state, int clump, double factor) {
+namespace {
+
+/// Mass and inertia as shape, size and material have it; the speeds stay.
+void weigh(const Model& model, State& state, int clump) {
   const Index i = static_cast<Index>(clump);
   Clumps& c = state.clumps;
-  c.scale[i] *= factor;
   const ClumpTemplate& t = model.templates[static_cast<Index>(c.shape[i])];
   const double density = model.materials[static_cast<Index>(c.material[i])].density;
   c.mass[i] = density * t.volume * std::pow(c.scale[i], 3);
   c.inertia[i] = density * std::pow(c.scale[i], 5) * t.inertia;
   set_motion(state, clump, c.velocity[i], c.angular_velocity[i]);
+}
+
+/// Lets go of the candidates of the pairs that `is_gone` tells, and of the pairs.
+template <class Block, class IsGone>
+void forget_pairs(std::vector<Block>& blocks, const IsGone& is_gone) {
+  for (Block& block : blocks) std::erase_if(block.pairs, is_gone);
+}
+
+}  // namespace
+
+void rescale(const Model& model, State& state, int clump, double factor) {
+  state.clumps.scale[static_cast<Index>(clump)] *= factor;
+  weigh(model, state, clump);
+}
+
+void reshape(const Model& model, State& state, const std::vector<Reshaped>& stones) {
+  std::vector<bool> is_new(state.clumps.id.size(), false);
+  for (const Reshaped& r : stones) {
+    const Index i = static_cast<Index>(r.clump);
+    is_new[i] = true;
+    state.clumps.shape[i] = r.shape;
+    state.clumps.scale[i] = r.scale;
+    state.clumps.material[i] = r.material;
+    state.clumps.orientation[i] = r.orientation;
+    weigh(model, state, r.clump);
+  }
+  forget_pairs(state.pair_blocks, [&](const ClumpPair& p) {
+    return is_new[static_cast<Index>(p.i)] || is_new[static_cast<Index>(p.j)];
+  });
+  forget_pairs(state.wall_blocks, [&](const WallPair& p) { return is_new[static_cast<Index>(p.clump)]; });
 }
 
 void remove_clumps(State& state, const std::vector<int>& clumps) {
@@ -79,17 +111,17 @@ void remove_clumps(State& state, const std::vector<int>& clumps) {
   int next = 0;
   for (Index k = 0; k < gone.size(); ++k) new_index[k] = gone[k] ? -1 : next++;
 
+  forget_pairs(state.pair_blocks, [&](const ClumpPair& p) {
+    return gone[static_cast<Index>(p.i)] || gone[static_cast<Index>(p.j)];
+  });
   for (PairBlock& block : state.pair_blocks) {
-    std::erase_if(block.pairs, [&](const ClumpPair& p) {
-      return gone[static_cast<Index>(p.i)] || gone[static_cast<Index>(p.j)];
-    });
     for (ClumpPair& p : block.pairs) {
       p.i = new_index[static_cast<Index>(p.i)];
       p.j = new_index[static_cast<Index>(p.j)];
     }
   }
+  forget_pairs(state.wall_blocks, [&](const WallPair& p) { return gone[static_cast<Index>(p.clump)]; });
   for (WallBlock& block : state.wall_blocks) {
-    std::erase_if(block.pairs, [&](const WallPair& p) { return gone[static_cast<Index>(p.clump)]; });
     for (WallPair& p : block.pairs) p.clump = new_index[static_cast<Index>(p.clump)];
   }
   erase_at(c.id, gone);

@@ -115,6 +115,19 @@ void set_motion(State& state, int clump, const Vec3& velocity, const Vec3& angul
 /// Multiplies a stone's size by `factor` about its centre; mass and inertia follow.
 void rescale(const Model& model, State& state, int clump, double factor);
 
+/// What becomes of a stone that stays where it is.
+struct Reshaped {
+  int clump;
+  int shape;  // index into Model::templates
+  double scale;
+  int material;
+  Quat orientation;
+};
+
+/// Gives stones another shape, size, material and orientation about the same centre, and the motion they had.
+/// The memory of their contacts is let go of.
+void reshape(const Model& model, State& state, const std::vector<Reshaped>& stones);
+
 /// Removes stones (indices ascending) and the memory of their contacts; the others keep their order.
 void remove_clumps(State& state, const std::vector<int>& clumps);
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
+#include <iterator>
 
 #include <fmt/format.h>
 
@@ -56,7 +56,7 @@ void build_materials(const CaseInput& in, Simulation& sim) {
 }
 
 /// One template from a file; nothing when the stone is longer than the case allows.
-std::optional<ClumpTemplate> stone_from_file(const std::filesystem::path& file, const StonesInput& in,
+std::optional<ClumpTemplate> stone_from_file(const std::filesystem::path& file, const ShapesInput& in,
                                              const ClumpFilling& filling) {
   // Scans come in all units; the grading gives the size. Here the stone is made about as large as ballast.
   TriangleMesh mesh = make_solid(read_mesh(file), file.string()).mesh;
@@ -67,12 +67,10 @@ std::optional<ClumpTemplate> stone_from_file(const std::filesystem::path& file, 
   return stone.clump;
 }
 
-void build_templates(const Document& document, const CaseInput& in, Simulation& sim) {
-  const StonesInput& stones = in.stones;
-  if (stones.fidelity == "ball") {
-    sim.model.templates.push_back(make_ball_template(0.02));
-    return;
-  }
+/// The templates of one set; `key`: where it stands in the case.
+std::vector<ClumpTemplate> make_templates(const Document& document, const std::string& key,
+                                          const ShapesInput& stones, std::uint64_t seed) {
+  if (stones.fidelity == "ball") return {make_ball_template(0.02)};
   ClumpFilling filling;
   filling.distance = stones.distance;
   filling.ratio = stones.ratio;
@@ -85,9 +83,9 @@ void build_templates(const Document& document, const CaseInput& in, Simulation& 
       if (stones.files.empty()) {
         StoneRecipe recipe;
         recipe.sieve_size = 0.04;
-        made[k] = make_stone(generate_stone(recipe, in.seed, static_cast<int>(k)), fmt::format("stone-{}", k),
-                             filling)
-                      .clump;
+        made[k] =
+            make_stone(generate_stone(recipe, seed, static_cast<int>(k)), fmt::format("stone-{}", k), filling)
+                .clump;
       } else {
         made[k] = stone_from_file(stones.files[k], stones, filling);
       }
@@ -98,12 +96,34 @@ void build_templates(const Document& document, const CaseInput& in, Simulation& 
 #pragma omp parallel for schedule(dynamic)
   for (int k = 0; k < n; ++k) make_one(static_cast<std::size_t>(k));
   for (const std::string& error : errors)
-    if (!error.empty()) document.fail("stones.files", error, "repair the mesh or leave it out");
+    if (!error.empty()) document.fail(key + ".files", error, "repair the mesh or leave it out");
+  std::vector<ClumpTemplate> templates;
   for (std::optional<ClumpTemplate>& t : made)
-    if (t) sim.model.templates.push_back(std::move(*t));
-  if (sim.model.templates.empty())
-    document.fail("stones.files", "no stone is left: all are longer than largest_elongation allows",
-                  "raise stones.largest_elongation");
+    if (t) templates.push_back(std::move(*t));
+  if (templates.empty())
+    document.fail(key + ".files", "no stone is left: all are longer than largest_elongation allows",
+                  fmt::format("raise {}.largest_elongation", key));
+  return templates;
+}
+
+void build_set(const Document& document, const std::string& name, const ShapesInput& in, Simulation& sim) {
+  const std::string key = name.empty() ? "stones" : "stones.sets." + name;
+  const int material = material_index(document, sim, key + ".material", in.material);
+  if (sim.model.materials[static_cast<std::size_t>(material)].density == 0)
+    document.fail("materials." + in.material, "the stones' material has no density",
+                  "give density, for example \"2630 kg/m^3\"");
+  std::vector<ClumpTemplate> templates = make_templates(document, key, in, sim.seed);
+  sim.stone_sets.push_back(
+      {name, static_cast<int>(sim.model.templates.size()), static_cast<int>(templates.size()), material});
+  std::ranges::move(templates, std::back_inserter(sim.model.templates));
+}
+
+void build_region(const Document& document, const std::string& name, const RegionInput& in, Simulation& sim) {
+  try {
+    sim.regions[name] = in.make();
+  } catch (const InputError& error) {
+    document.fail(in.here + ".file", error.what(), "mend the file or choose another");
+  }
 }
 
 void build_body(const std::string& name, const BodyInput& in, int material, Simulation& sim,
@@ -145,11 +165,9 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
     build_body(name, *body.input,
                material_index(document, sim, body.input->here + ".material", body.input->material), sim,
                document);
-  const int stone = material_index(document, sim, "stones.material", in.stones.material);
-  if (sim.model.materials[static_cast<std::size_t>(stone)].density == 0)
-    document.fail("materials." + in.stones.material, "the stones' material has no density",
-                  "give density, for example \"2630 kg/m^3\"");
-  build_templates(document, in, sim);
+  build_set(document, "", in.stones, sim);
+  for (const auto& [name, set] : in.stones.sets) build_set(document, name, set, sim);
+  for (const auto& [name, region] : in.regions) build_region(document, name, *region.input, sim);
 
   Model& m = sim.model;
   m.gravity = in.numerics.gravity;

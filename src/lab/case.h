@@ -23,7 +23,7 @@ struct GradingInput {
 };
 
 /// Where stone shapes come from and how finely they are filled with pebbles.
-struct StonesInput {
+struct ShapesInput {
   std::vector<std::filesystem::path> files;  // empty: made by the generator
   int shapes = 10;                           // made by the generator
   std::string fidelity = "clump";            // clump | ball
@@ -32,7 +32,12 @@ struct StonesInput {
   int max_pebbles = 0;
   double largest_elongation = 3;  // stones with a longer L/S are left out
   std::string material = "ballast";
+};
+
+/// The stones of the experiment; further sets of shapes that stages may name.
+struct StonesInput : ShapesInput {
   GradingInput grading;
+  std::map<std::string, ShapesInput> sets;
 };
 
 struct MaterialInput {
@@ -49,6 +54,16 @@ struct ContactInput {
   std::string inherit = "series";
   DashpotInput dashpot;
 };
+
+/// A part of space, chosen by its kind (box, mesh, field).
+struct RegionInput {
+  std::string here;  // where it stands in the file, for errors found later
+  virtual ~RegionInput() = default;
+  /// Tells whether a point [m] lies in it. Throws InputError when a file cannot be used.
+  virtual Region make() const = 0;
+};
+
+const Kinds<RegionInput>& region_kinds();
 
 /// A wall, chosen by its kind (plane, box, mesh).
 struct WallInput {
@@ -102,6 +117,7 @@ struct CaseInput {
   ContactInput contact;
   std::map<std::string, OneOf<WallInput>> walls;
   std::map<std::string, OneOf<BodyInput>> bodies;
+  std::map<std::string, OneOf<RegionInput>> regions;
   NumericsInput numerics;
   RecordInput record;
   std::vector<OneOf<StageInput>> stages;

@@ -33,7 +33,7 @@ void declare(Fields& f, GradingInput& in) {
           "the grading does not sum to the whole", "let the shares begin with 0 % and end with 100 %");
 }
 
-void declare(Fields& f, StonesInput& in) {
+void declare(Fields& f, ShapesInput& in) {
   f.paths("files", in.files,
           "stone meshes (STL, OBJ, PLY); by default shapes are made by the stone generator");
   f.integer("shapes", in.shapes, {.at_least = 1, .at_most = 1000},
@@ -49,7 +49,12 @@ void declare(Fields& f, StonesInput& in) {
   f.number("largest_elongation", in.largest_elongation, {.above = 1},
            "stones from files whose length is more than this times their thickness are left out");
   f.text("material", in.material, "a material of the case");
+}
+
+void declare(Fields& f, StonesInput& in) {
+  declare(f, static_cast<ShapesInput&>(in));
   f.section("grading", in.grading, "stone sizes");
+  f.table("sets", in.sets, "further sets of shapes by name, for the stages that name one");
 }
 
 void declare(Fields& f, MaterialInput& in) {
@@ -123,6 +128,7 @@ void declare(Fields& f, CaseInput& in) {
   f.section("contact", in.contact, "contact law");
   f.table("walls", in.walls, wall_kinds(), "walls by name");
   f.table("bodies", in.bodies, body_kinds(), "bodies with mass, by name; a stage places them");
+  f.table("regions", in.regions, region_kinds(), "parts of space by name, for the stages that name one");
   f.section("numerics", in.numerics, "gravity, damping, time step, search");
   f.section("record", in.record, "what is written");
   f.sequence("stages", in.stages, stage_kinds(), "what happens, in this order");

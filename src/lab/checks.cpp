@@ -53,6 +53,22 @@ void check_wall(const Document& document, const Simulation& sim, const std::stri
   if (std::ranges::find(known, name) == known.end()) refuse_unknown(document, key, "wall", name, known);
 }
 
+void check_stone_set(const Document& document, const CaseInput& in, const std::string& key,
+                     const std::string& name) {
+  if (in.stones.sets.contains(name)) return;
+  std::vector<std::string> known;
+  for (const auto& [other, set] : in.stones.sets) known.push_back(other);
+  refuse_unknown(document, key, "set of stones", name, known);
+}
+
+void check_region(const Document& document, const CaseInput& in, const std::string& key,
+                  const std::string& name) {
+  if (in.regions.contains(name)) return;
+  std::vector<std::string> known;
+  for (const auto& [other, region] : in.regions) known.push_back(other);
+  refuse_unknown(document, key, "region", name, known);
+}
+
 void check_names(const Document& document, const CaseInput& in) {
   std::string container;
   for (const auto& [name, wall] : in.walls) {
@@ -63,6 +79,8 @@ void check_names(const Document& document, const CaseInput& in) {
                     fmt::format("{} is the container; make the other walls of planes or a mesh", container));
     container = name;
   }
+  for (const auto& [name, set] : in.stones.sets) check_plain(document, "stones.sets", name);
+  for (const auto& [name, region] : in.regions) check_plain(document, "regions", name);
   for (const auto& [name, body] : in.bodies) {
     check_plain(document, "bodies", name);
     if (in.walls.contains(name))
@@ -93,16 +111,16 @@ void check_time_step(const Document& document, const CaseInput& in, const Simula
   model.limits = {};
   model.time_step.fixed.reset();
   const GradingInput& grading = in.stones.grading;
-  const int material = sim.find_material(in.stones.material);
   double stable = std::numeric_limits<double>::infinity();
-  for (std::size_t shape = 0; shape < model.templates.size(); ++shape) {
-    State state;
-    Workspace work;
-    const double scale = scale_to_size(grading, model.templates[shape], smallest_size(grading));
-    add_clump(model, state, static_cast<int>(shape), scale, material, {});
-    settle_contacts(model, state, work);
-    stable = std::min(stable, state.planned_dt);
-  }
+  for (const StoneSet& set : sim.stone_sets)
+    for (int shape = set.first; shape < set.first + set.count; ++shape) {
+      State state;
+      Workspace work;
+      const ClumpTemplate& t = model.templates[static_cast<std::size_t>(shape)];
+      add_clump(model, state, shape, scale_to_size(grading, t, smallest_size(grading)), set.material, {});
+      settle_contacts(model, state, work);
+      stable = std::min(stable, state.planned_dt);
+    }
   if (*in.numerics.time_step > stable)
     document.fail("numerics.time_step",
                   fmt::format("time_step is above the stable one, {:.3g} s for the smallest stones", stable),

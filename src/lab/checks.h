@@ -24,6 +24,12 @@ void check_body(const Document& document, const Simulation& sim, const std::stri
 void check_wall(const Document& document, const Simulation& sim, const std::string& key,
                 const std::string& name);
 
+/// Refuse a name that is no set of stones, or no region, of the case.
+void check_stone_set(const Document& document, const CaseInput& experiment, const std::string& key,
+                     const std::string& name);
+void check_region(const Document& document, const CaseInput& experiment, const std::string& key,
+                  const std::string& name);
+
 /// Names of walls and bodies: plain, and each once. There is one container at most.
 void check_names(const Document& document, const CaseInput& experiment);
 

@@ -1,5 +1,7 @@
 #include "lab/grading.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -52,6 +54,14 @@ std::vector<double> passing(const GradingInput& grading, const std::vector<doubl
     shares.push_back(all > 0 ? below / all : 0);
   }
   return shares;
+}
+
+std::vector<Result> passing_results(const GradingInput& grading, const std::vector<double>& sizes) {
+  const std::vector<double> shares = passing(grading, sizes);
+  std::vector<Result> results;
+  for (std::size_t k = 0; k < shares.size(); ++k)
+    results.push_back({fmt::format("passing_{:g}_mm", 1e3 * grading.sieves[k]), shares[k], Dimension::none});
+  return results;
 }
 
 }  // namespace trackbed

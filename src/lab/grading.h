@@ -22,4 +22,7 @@ double scale_to_size(const GradingInput& grading, const ClumpTemplate& stone, do
 /// Share of volume that passes each sieve, of stones of these sizes [-].
 std::vector<double> passing(const GradingInput& grading, const std::vector<double>& sizes);
 
+/// The same as results of a stage, one a sieve.
+std::vector<Result> passing_results(const GradingInput& grading, const std::vector<double>& sizes);
+
 }  // namespace trackbed

@@ -1,6 +1,11 @@
 #include "lab/simulation.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <utility>
+
+#include "base/error.h"
 
 namespace trackbed {
 
@@ -14,6 +19,16 @@ int Simulation::find_material(std::string_view name) const {
   for (std::size_t m = 0; m < model.materials.size(); ++m)
     if (model.materials[m].name == name) return static_cast<int>(m);
   return -1;
+}
+
+const StoneSet& Simulation::stone_set(std::string_view name) const {
+  const auto found = std::ranges::find(stone_sets, name, &StoneSet::name);
+  if (found == stone_sets.end()) throw RunError(fmt::format("there is no set of stones called {}", name));
+  return *found;
+}
+
+void Simulation::stop_stones() {
+  for (int c = 0; c < state.clumps.size(); ++c) set_motion(state, c, Vec3::Zero(), Vec3::Zero());
 }
 
 int add_wall(Simulation& sim, Wall wall, const Pose& pose) {

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,16 @@
 
 namespace trackbed {
 
+/// Shapes of one kind and their material: what stones are drawn from.
+struct StoneSet {
+  std::string name;
+  int first = 0, count = 0;  // in Model::templates
+  int material = 0;
+};
+
+/// Tells whether a point [m] lies in a part of space.
+using Region = std::function<bool(const Vec3&)>;
+
 struct Simulation {
   Model model;
   State state;
@@ -24,10 +36,17 @@ struct Simulation {
   std::vector<Pose>
       wall_reference;  // where each wall and body stood at the start, or where a stage placed it
   std::string stage;   // name of the one that runs
+  std::vector<StoneSet> stone_sets;       // first that of [stones], without a name
+  std::map<std::string, Region> regions;  // by the names of the case
 
   /// Index of the wall or body of that name; -1 when there is none.
   int find_wall(std::string_view name) const;
   int find_material(std::string_view name) const;
+  /// The set of that name, which must be there; "" is that of [stones].
+  const StoneSet& stone_set(std::string_view name) const;
+
+  /// Takes all speed from the stones.
+  void stop_stones();
 
   void step() { trackbed::step(model, state, work); }
 

@@ -23,7 +23,8 @@ using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 const fs::path folder = fs::path(TRACKBED_ROOT) / "tests/input/every_key";
-const std::map<std::string, std::string> tables{{"wall", "walls"}, {"body", "bodies"}, {"stage", "stages"}};
+const std::map<std::string, std::string> tables{
+    {"wall", "walls"}, {"body", "bodies"}, {"region", "regions"}, {"stage", "stages"}};
 
 /// A key, with the dotted paths of its tables in a case: "stages.2" and "embedment".
 struct DescribedKey {
@@ -68,7 +69,7 @@ std::vector<DescribedKey> described_keys(const Json& input) {
     std::string path = row.key;
     if (const auto name = path.find("NAME"); name != std::string::npos) {
       const std::string table = path.substr(0, name - 1);
-      path.replace(name, 4, input[table].items().begin().key());
+      path.replace(name, 4, at(input, table).items().begin().key());
     }
     const auto dot = path.rfind('.');
     const std::string inside = dot == std::string::npos ? "" : path.substr(0, dot);

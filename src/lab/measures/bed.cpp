@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "dem/touching.h"
 #include "lab/in_touch.h"
 #include "lab/measures/measures.h"
 
@@ -164,16 +165,31 @@ double pebble_volume(const Simulation& sim) {
   return sum;
 }
 
-double porosity(const Simulation& sim, double solid) {
-  if (solid == 0) return 1.0;
+double bed_volume(const Simulation& sim) {
   const double height = bed_height(sim);
-  const double floor = sim.container.min().z();
   const Eigen::Vector3d size = sim.container.sizes();
-  double volume = size.x() * size.y() * (height - floor);
+  double volume = size.x() * size.y() * (height - sim.container.min().z());
   for (Index w = 0; w < sim.model.walls.size(); ++w)
     if (sim.model.walls[w].body && sim.state.walls[w].present)
       volume -= volume_below(sim.model.walls[w].shape, sim.state.walls[w].pose, height);
-  return 1.0 - solid / volume;
+  return volume;
+}
+
+double porosity(const Simulation& sim, double solid) {
+  return solid == 0 ? 1.0 : 1.0 - solid / bed_volume(sim);
+}
+
+BedStress bed_stress(const Simulation& sim) {
+  BedStress stress;
+  if (sim.container.isEmpty() || sim.state.clumps.size() == 0) return stress;
+  stress.volume = bed_volume(sim);
+  visit_touching(sim.model, sim.state, [&](const Touching& t) {
+    const Vec3 branch = t.clump_2 >= 0 ? Vec3(t.lever_1 - t.lever_2) : t.lever_1;
+    const double along = branch.dot(t.normal);
+    stress.mean += t.force().dot(branch) / (3.0 * stress.volume);
+    stress.stiffness += t.properties->kn * along * along;
+  });
+  return stress;
 }
 
 }  // namespace trackbed

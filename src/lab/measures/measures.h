@@ -31,8 +31,19 @@ double median_size(
     const Simulation& sim);  ///< half of the mass is of stones with a smaller equal-volume diameter
 
 double bed_height(const Simulation& sim);  ///< bed_surface over the whole container [m]
+/// Of the container up to the bed's surface, bodies below it left out [m^3].
+double bed_volume(const Simulation& sim);
 /// Share of pores in the container up to the bed's surface, bodies below it left out; 1 without stones.
 double porosity(const Simulation& sim, double solid);  ///< with this volume of solids [m^3]
+/// Mean stress of the bed, from its contacts (Love 1927; docs/theory.md), compression positive.
+struct BedStress {
+  double mean = 0;  // a third of the trace of sum(force x branch) / volume [Pa]
+  double stiffness =
+      0;              // sum of k_n branch_n^2: how much 3 volume x mean grows with the stones' lengths [N m]
+  double volume = 0;  // bed_volume [m^3]
+};
+BedStress bed_stress(const Simulation& sim);
+
 /// Part of a body below height z [m^3]; its mesh must be closed.
 double volume_below(const WallShape& shape, const Pose& pose, double z);
 

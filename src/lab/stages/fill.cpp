@@ -11,7 +11,9 @@
 #include "dem/overlap.h"
 #include "io/read.h"
 #include "lab/case.h"
+#include "lab/checks.h"
 #include "lab/grading.h"
+#include "lab/room.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -21,6 +23,7 @@ struct FillInput : StageInput {
   double porosity = 0.4;
   double density = 0.22;
   double clearance = 0.2e-3;  // [m]
+  std::string set;            // empty: that of [stones]
 
   /// Of the stones that fill the container [m], the largest first.
   std::vector<double> sizes(const StonesInput& stones, const Simulation& sim) const {
@@ -38,6 +41,7 @@ void declare(Fields& f, FillInput& in) {
   f.number("density", in.density, {.above = 0, .at_most = 0.3},
            "share of the column above the floor that the falling stones take up");
   f.quantity("clearance", in.clearance, Dimension::length, {.above = 0}, "left free between stones");
+  f.text("set", in.set, "a set of stones.sets to take the stones from; by default those of [stones]");
 }
 
 /// Places stones of the given sizes at random, none touching another or a wall, in a column over the
@@ -48,6 +52,7 @@ class Fill : public Stage {
 
   void open(Simulation& sim) override {
     Rng rng(sim.seed, "places");
+    set_ = sim.stone_set(in_.set);
     sizes_ = in_.sizes(stones_, sim);
     double volume = 0;
     for (double size : sizes_) volume += std::numbers::pi / 6.0 * size * size * size;
@@ -67,10 +72,7 @@ class Fill : public Stage {
   std::vector<Result> close(Simulation&) override {
     std::vector<Result> results{{"added", static_cast<double>(sizes_.size()), Dimension::none},
                                 {"column_height", column_.sizes().z(), Dimension::length}};
-    const std::vector<double> shares = passing(stones_.grading, sizes_);
-    for (std::size_t k = 0; k < shares.size(); ++k)
-      results.push_back(
-          {fmt::format("passing_{:g}_mm", 1e3 * stones_.grading.sieves[k]), shares[k], Dimension::none});
+    for (const Result& r : passing_results(stones_.grading, sizes_)) results.push_back(r);
     return results;
   }
 
@@ -79,8 +81,10 @@ class Fill : public Stage {
 
   double largest_bound(const Simulation& sim) const {
     double bound = 0;
-    for (const ClumpTemplate& t : sim.model.templates)
+    for (int shape = set_.first; shape < set_.first + set_.count; ++shape) {
+      const ClumpTemplate& t = sim.model.templates[static_cast<std::size_t>(shape)];
       bound = std::max(bound, t.bounding_radius * scale_to_size(stones_.grading, t, sizes_.front()));
+    }
     const Clumps& there = sim.state.clumps;  // from an earlier stage
     for (std::size_t c = 0; c < there.id.size(); ++c)
       bound =
@@ -99,10 +103,7 @@ class Fill : public Stage {
   }
 
   bool is_free(const Simulation& sim, int stone) const {
-    for (std::size_t w = 0; w < sim.state.walls.size(); ++w)
-      if (sim.state.walls[w].present &&
-          stone_meets_wall(sim.model, sim.state, stone, static_cast<int>(w), in_.clearance))
-        return false;
+    if (!is_clear_of_walls(sim, stone, in_.clearance)) return false;
     const auto [x, y, z] = place_of(sim.state.clumps.position[static_cast<std::size_t>(stone)]);
     for (std::int64_t dx = -1; dx <= 1; ++dx)
       for (std::int64_t dy = -1; dy <= 1; ++dy)
@@ -116,11 +117,10 @@ class Fill : public Stage {
   }
 
   void place(Simulation& sim, double size, Rng& rng) {
-    const int shape = static_cast<int>(rng.index(static_cast<std::uint32_t>(sim.model.templates.size())));
+    const int shape = set_.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set_.count)));
     const ClumpTemplate& stone_shape = sim.model.templates[static_cast<std::size_t>(shape)];
     const double scale = scale_to_size(stones_.grading, stone_shape, size);
-    const int material = sim.find_material(stones_.material);
-    const int stone = add_clump(sim.model, sim.state, shape, scale, material, {});
+    const int stone = add_clump(sim.model, sim.state, shape, scale, set_.material, {});
     Clumps& c = sim.state.clumps;
     const auto k = static_cast<std::size_t>(stone);
     constexpr int tries_before_growth = 500;
@@ -146,6 +146,7 @@ class Fill : public Stage {
 
   FillInput in_;
   StonesInput stones_;
+  StoneSet set_;
   std::vector<double> sizes_;  // [m]
   Eigen::AlignedBox3d column_;
   double cell_ = 0;  // [m]
@@ -153,8 +154,8 @@ class Fill : public Stage {
 };
 
 void FillInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
-  if (sim.container.isEmpty())
-    document.fail(here, "there is no container to fill", "add a wall of kind box, such as [walls.box]");
+  if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
+  check_room(document, here, sim);
   const double largest = experiment.stones.grading.sieves.back();
   const double fewest =
       (1.0 - porosity) * sim.container.volume() / (std::numbers::pi / 6.0 * std::pow(largest, 3));

@@ -48,11 +48,7 @@ class Settle : public Stage {
     gravity_ = sim.model.gravity;
     if (in_.gravity) sim.model.gravity = *in_.gravity * gravity_.normalized();
     if (in_.damping) sim.model.local_damping = *in_.damping;
-    if (!in_.friction) return;
-    PairTable& pairs = sim.model.pairs;
-    for (int a = 0; a < pairs.size(); ++a)
-      for (int b = 0; b < pairs.size(); ++b)
-        pairs(a, b).friction = std::min(pairs(a, b).friction, *in_.friction);
+    if (in_.friction) sim.model.pairs = pairs_.with_friction_up_to(*in_.friction);
   }
 
   bool finished(const Simulation& sim) override {

@@ -12,5 +12,9 @@ Kind<StageInput> load_stage();
 Kind<StageInput> move_stage();
 Kind<StageInput> servo_stage();
 Kind<StageInput> hold_stage();
+Kind<StageInput> scatter_stage();
+Kind<StageInput> replace_stage();
+Kind<StageInput> adjust_stage();
+Kind<StageInput> remove_stage();
 
 }  // namespace trackbed

@@ -1,0 +1,59 @@
+#include "lab/room.h"
+
+#include <cmath>
+
+#include "dem/overlap.h"
+
+namespace trackbed {
+
+using Index = std::size_t;
+
+void check_room(const Document& document, const std::string& key, const Simulation& sim) {
+  if (sim.container.isEmpty())
+    document.fail(key, "there is no container to fill", "add a wall of kind box, such as [walls.box]");
+}
+
+bool is_in_room(const Simulation& sim, const Vec3& point) {
+  if (!sim.container.contains(point)) return false;
+  for (Index w = 0; w < sim.model.walls.size(); ++w) {
+    if (!sim.state.walls[w].present) continue;
+    const Wall& wall = sim.model.walls[w];
+    const Vec3 seen = sim.state.walls[w].pose.to_body(point);
+    if (wall.shape.is_plane && seen.z() < 0) return false;
+    if (wall.body && is_inside(wall.shape, seen)) return false;
+  }
+  return true;
+}
+
+double room_volume(const Simulation& sim) {
+  const Vec3 size = sim.container.sizes();
+  const double step = size.minCoeff() / 100;
+  const Eigen::Array3d n = (size.array() / step).round();
+  double inside = 0;
+  for (int x = 0; x < n.x(); ++x)
+    for (int y = 0; y < n.y(); ++y)
+      for (int z = 0; z < n.z(); ++z) {
+        const Vec3 share = (Eigen::Array3d(x, y, z) + 0.5) / n;
+        if (is_in_room(sim, sim.container.min() + share.cwiseProduct(size))) ++inside;
+      }
+  return inside / n.prod() * size.prod();
+}
+
+Vec3 point_in_room(const Simulation& sim, Rng& rng) {
+  const Vec3 low = sim.container.min(), high = sim.container.max();
+  for (;;) {
+    const double x = rng.uniform(low.x(), high.x()), y = rng.uniform(low.y(), high.y()),
+                 z = rng.uniform(low.z(), high.z());
+    if (is_in_room(sim, {x, y, z})) return {x, y, z};
+  }
+}
+
+bool is_clear_of_walls(const Simulation& sim, int stone, double clearance) {
+  for (Index w = 0; w < sim.state.walls.size(); ++w) {
+    if (!sim.state.walls[w].present) continue;
+    if (stone_meets_wall(sim.model, sim.state, stone, static_cast<int>(w), clearance)) return false;
+  }
+  return true;
+}
+
+}  // namespace trackbed

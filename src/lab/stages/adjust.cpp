@@ -1,0 +1,139 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "base/error.h"
+#include "lab/case.h"
+#include "lab/measures/measures.h"
+#include "lab/room.h"
+#include "lab/stages/table.h"
+
+namespace trackbed {
+namespace {
+
+struct AdjustInput : StageInput {
+  std::optional<double> stress;  // [Pa]
+  std::optional<double> tolerance;
+  double unbalanced_ratio = 1e-3;
+  double largest_factor = 0.01;
+  int steps = 400, rounds = 200;
+  std::optional<double> friction;  // during this stage
+  void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
+    check_room(document, here, sim);
+  }
+  std::unique_ptr<Stage> make(const CaseInput&) const override;
+};
+
+void declare(Fields& f, AdjustInput& in) {
+  declare_common(f, in);
+  f.quantity(
+      "stress", in.stress, Dimension::stress, {.above = 0},
+      "mean stress to reach; by default sizes are only reduced, until it is no more than the bed's weight "
+      "brings about with K0 = 0.4");
+  f.number("tolerance", in.tolerance, {.above = 0},
+           "of the mean stress; by default 5 %, or 50 % when no stress is given, for K0 depends on the bed");
+  f.number("unbalanced_ratio", in.unbalanced_ratio, {.above = 0, .below = 1},
+           "the bed must be as near to rest as that");
+  f.number("largest_factor", in.largest_factor, {.above = 0, .below = 0.5},
+           "the run fails when sizes would have to change by more than this share in all");
+  f.integer("steps", in.steps, {.at_least = 50}, "between two changes of the sizes");
+  f.integer("rounds", in.rounds, {.at_least = 1}, "most changes of the sizes");
+  f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
+           "upper bound on the friction of all contacts during this stage");
+}
+
+/// Shrinks or grows all stones about their centres until the mean stress is that asked for (PRRA; eq. in
+/// docs/theory.md).
+class Adjust : public Stage {
+ public:
+  explicit Adjust(const AdjustInput& in) : in_(in) {}
+
+  void open(Simulation& sim) override {
+    pairs_ = sim.model.pairs;
+    if (in_.friction) sim.model.pairs = pairs_.with_friction_up_to(*in_.friction);
+    target_ = in_.stress ? *in_.stress : stress_of_weight(sim);
+    start_ = next_ = sim.state.step;
+    sim.changed();
+  }
+
+  void control(Simulation& sim) override {
+    constexpr int calm_rounds = 5, calm_every = 50;
+    if (sim.state.step < start_ + calm_rounds * in_.steps && sim.state.step % calm_every == 0)
+      sim.stop_stones();
+    if (sim.state.step < next_) return;
+    next_ = sim.state.step + in_.steps;
+    const BedStress now = bed_stress(sim);
+    const double excess = now.mean - target_;
+    // Stones that lie too loose come nearer by themselves: only a stress of the user's own makes them grow.
+    reached_ = (in_.stress ? std::abs(excess) : excess) <= tolerance() * target_;
+    if (reached_ || now.stiffness == 0) return;
+    if (round_ == in_.rounds) fail(now, fmt::format("after {} changes of the sizes", round_));
+    change_sizes(sim, now);
+  }
+
+  bool finished(const Simulation& sim) override {
+    return reached_ && unbalanced_ratio(sim.model, sim.state) < in_.unbalanced_ratio;
+  }
+
+  std::vector<Result> close(Simulation& sim) override {
+    const BedStress now = bed_stress(sim);
+    sim.model.pairs = pairs_;
+    return {{"factor", factor_, Dimension::none},
+            {"rounds", static_cast<double>(round_), Dimension::none},
+            {"stress", now.mean, Dimension::stress},
+            {"stress_wanted", target_, Dimension::stress},
+            {"porosity", porosity(sim, solid_volume(sim)), Dimension::none},
+            {"largest_overlap", largest_overlap(sim), Dimension::none}};
+  }
+
+ private:
+  double tolerance() const { return in_.tolerance.value_or(in_.stress ? 0.05 : 0.5); }
+
+  /// Half of the floor's pressure, for the mean over the height, and the sides' share with K0 = 0.4 [Pa].
+  static double stress_of_weight(const Simulation& sim) {
+    constexpr double k0 = 0.4;
+    const Vec3 size = sim.container.sizes();
+    return (1.0 + 2.0 * k0) / 3.0 * 0.5 * weight(sim) / (size.x() * size.y());
+  }
+
+  void change_sizes(Simulation& sim, const BedStress& now) {
+    constexpr double relaxation = 0.5, most_growth = 1e-3, most_loss = 2e-3;
+    const double beta = std::clamp(relaxation * 3.0 * now.volume * (target_ - now.mean) / now.stiffness,
+                                   -most_loss, most_growth);
+    if (std::abs(factor_ * (1.0 + beta) - 1.0) > in_.largest_factor)
+      fail(now, fmt::format("with sizes changed by {:+.2f} %", 100 * (factor_ - 1.0)));
+    factor_ *= 1.0 + beta;
+    for (int c = 0; c < sim.state.clumps.size(); ++c) rescale(sim.model, sim.state, c, 1.0 + beta);
+    ++round_;
+    sim.changed();
+  }
+
+  [[noreturn]] void fail(const BedStress& now, const std::string& when) const {
+    throw RunError(
+        fmt::format("the mean stress is {:.3g} Pa {}, {:.3g} Pa was to be reached: these shapes do "
+                    "not reach this porosity; raise it, or allow a larger largest_factor",
+                    now.mean, when, target_));
+  }
+
+  AdjustInput in_;
+  PairTable pairs_;
+  double target_ = 0, factor_ = 1;
+  int round_ = 0;
+  std::int64_t start_ = 0, next_ = 0;
+  bool reached_ = false;
+};
+
+std::unique_ptr<Stage> AdjustInput::make(const CaseInput&) const {
+  return std::make_unique<Adjust>(*this);
+}
+
+}  // namespace
+
+Kind<StageInput> adjust_stage() {
+  return kind_of<StageInput, AdjustInput>(
+      "adjust", "changes the sizes of all stones a little until the bed bears the stress it should");
+}
+
+}  // namespace trackbed

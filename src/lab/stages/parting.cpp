@@ -1,0 +1,82 @@
+#include "lab/stages/parting.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "base/error.h"
+#include "dem/touching.h"
+#include "lab/in_touch.h"
+
+namespace trackbed {
+
+Overlaps overlaps_of_stones(const Simulation& sim) {
+  Overlaps all;
+  int n = 0;
+  visit_touching(sim.model, sim.state, [&](const Touching& t) {
+    if (t.clump_2 < 0) return;
+    const double radius = std::min(equal_volume_radius(sim, static_cast<std::size_t>(t.clump_1)),
+                                   equal_volume_radius(sim, static_cast<std::size_t>(t.clump_2)));
+    all.mean += t.overlap / radius;
+    all.largest = std::max(all.largest, t.overlap / radius);
+    ++n;
+  });
+  if (n > 0) all.mean /= n;
+  return all;
+}
+
+void Parting::open(Simulation& sim) {
+  start_ = sim.state.time;
+  gravity_ = sim.model.gravity;
+  damping_ = sim.model.local_damping;
+  limits_ = sim.model.limits;
+  pairs_ = sim.model.pairs;
+  sim.model.gravity = Vec3::Zero();
+  sim.model.local_damping = 0.7;
+  sim.model.limits.overlap = sim.model.limits.speed = std::numeric_limits<double>::infinity();
+  sim.model.pairs = pairs_.with_friction_up_to(0);
+  sim.changed();
+}
+
+void Parting::control(Simulation& sim) const {
+  constexpr int stop_every = 50;
+  if (sim.state.step % stop_every == 0) return sim.stop_stones();
+  const Clumps& c = sim.state.clumps;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < c.id.size(); ++k) smallest = std::min(smallest, equal_volume_radius(sim, k));
+  const double limit = 0.01 * smallest / sim.state.planned_dt;
+  for (std::size_t k = 0; k < c.id.size(); ++k) {
+    const double bound =
+        c.scale[k] * sim.model.templates[static_cast<std::size_t>(c.shape[k])].bounding_radius;
+    const double speed = c.velocity[k].norm() + bound * c.angular_velocity[k].norm();
+    if (speed <= limit) continue;
+    set_motion(sim.state, static_cast<int>(k), limit / speed * c.velocity[k],
+               limit / speed * c.angular_velocity[k]);
+  }
+}
+
+bool Parting::is_done(const Simulation& sim, double mean_overlap, double time_limit) {
+  constexpr int look_every = 50;
+  if (sim.state.step % look_every != 0) return false;
+  now_ = overlaps_of_stones(sim);
+  if (now_.mean < mean_overlap && now_.largest < limits_.overlap) return true;
+  if (sim.state.time - start_ > time_limit)
+    throw RunError(
+        fmt::format("the stones do not part: after {:.3g} s their mean overlap is {:.2g} % of a "
+                    "radius, {:.2g} % was asked for: so many stones of these shapes do not fit, raise the "
+                    "porosity",
+                    time_limit, 100 * now_.mean, 100 * mean_overlap));
+  return false;
+}
+
+void Parting::close(Simulation& sim) {
+  sim.model.gravity = gravity_;
+  sim.model.local_damping = damping_;
+  sim.model.limits = limits_;
+  sim.model.pairs = pairs_;
+  sim.stop_stones();
+  sim.changed();
+}
+
+}  // namespace trackbed

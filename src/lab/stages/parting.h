@@ -1,0 +1,40 @@
+// Stones that were put down overlapping part gently.
+#pragma once
+
+#include "lab/simulation.h"
+
+namespace trackbed {
+
+/// Mean overlap of stones with stones, over the smaller stone's equal-volume radius [-]; and the largest.
+struct Overlaps {
+  double mean = 0, largest = 0;
+};
+Overlaps overlaps_of_stones(const Simulation& sim);
+
+/// While it lasts there is neither friction nor gravity, overlaps are not limited, and stones move so little
+/// in a step that none is thrown.
+class Parting {
+ public:
+  void open(Simulation& sim);
+
+  /// No point of a stone moves in a step by more than a hundredth of the smallest stone's radius, and from
+  /// time to time all stand still: overlaps of any size come apart by small steps.
+  void control(Simulation& sim) const;
+
+  /// Whether the mean overlap is below this share.
+  bool is_done(const Simulation& sim, double mean_overlap, double time_limit);
+
+  void close(Simulation& sim);
+
+  double time(const Simulation& sim) const { return sim.state.time - start_; }  ///< since it began [s]
+  const Overlaps& overlaps() const { return now_; }                             ///< when last looked at
+
+ private:
+  double start_ = 0, damping_ = 0;
+  Limits limits_;
+  Vec3 gravity_ = Vec3::Zero();
+  PairTable pairs_;
+  Overlaps now_;
+};
+
+}  // namespace trackbed

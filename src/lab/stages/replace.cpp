@@ -1,0 +1,95 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/rng.h"
+#include "lab/case.h"
+#include "lab/checks.h"
+#include "lab/stages/parting.h"
+#include "lab/stages/table.h"
+
+namespace trackbed {
+namespace {
+
+struct ReplaceInput : StageInput {
+  std::string set;
+  std::string region;
+  bool outside = false;
+  double mean_overlap = 0.005;
+  double time_limit = 1;  // [s]
+  void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
+    if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
+    if (!region.empty()) check_region(document, experiment, here + ".region", region);
+  }
+  std::unique_ptr<Stage> make(const CaseInput&) const override;
+};
+
+void declare(Fields& f, ReplaceInput& in) {
+  declare_common(f, in);
+  f.text("set", in.set, "a set of stones.sets whose shapes take over; by default those of [stones]");
+  f.text("region", in.region, "stones whose centres lie in it are replaced; by default all");
+  f.flag("outside", in.outside, "replace those outside the region instead");
+  f.number("mean_overlap", in.mean_overlap, {.above = 0, .below = 1},
+           "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
+  f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
+             "the run fails when parting takes longer");
+  f.check(!in.outside || !in.region.empty(), "outside", "there is no region to be outside of", "give region");
+}
+
+/// Puts stones of another set in the place of those there: equal volume, same centre, any orientation (PRRA,
+/// docs/theory.md). Where the new shapes overlap they part.
+class Replace : public Stage {
+ public:
+  explicit Replace(const ReplaceInput& in) : in_(in) {}
+
+  void open(Simulation& sim) override {
+    const StoneSet& set = sim.stone_set(in_.set);
+    Rng rng(sim.seed, "replace " + in_.name);
+    Clumps& c = sim.state.clumps;
+    std::vector<Reshaped> stones;
+    for (int clump = 0; clump < c.size(); ++clump) {
+      const auto k = static_cast<std::size_t>(clump);
+      if (!in_.region.empty() && sim.regions.at(in_.region)(c.position[k]) == in_.outside) continue;
+      const int shape = set.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set.count)));
+      const auto volume = [&](int t) { return sim.model.templates[static_cast<std::size_t>(t)].volume; };
+      stones.push_back({clump, shape, c.scale[k] * std::cbrt(volume(c.shape[k]) / volume(shape)),
+                        set.material, rng.rotation()});
+    }
+    reshape(sim.model, sim.state, stones);
+    sim.stop_stones();
+    replaced_ = static_cast<int>(stones.size());
+    parting_.open(sim);
+  }
+
+  void control(Simulation& sim) override { parting_.control(sim); }
+  bool finished(const Simulation& sim) override {
+    return parting_.is_done(sim, in_.mean_overlap, in_.time_limit);
+  }
+
+  std::vector<Result> close(Simulation& sim) override {
+    parting_.close(sim);
+    const double all = std::max(1, sim.state.clumps.size());
+    return {{"replaced", static_cast<double>(replaced_), Dimension::none},
+            {"share", replaced_ / all, Dimension::none},
+            {"time", parting_.time(sim), Dimension::time},
+            {"mean_overlap", parting_.overlaps().mean, Dimension::none},
+            {"largest_overlap", parting_.overlaps().largest, Dimension::none}};
+  }
+
+ private:
+  ReplaceInput in_;
+  Parting parting_;
+  int replaced_ = 0;
+};
+
+std::unique_ptr<Stage> ReplaceInput::make(const CaseInput&) const {
+  return std::make_unique<Replace>(*this);
+}
+
+}  // namespace
+
+Kind<StageInput> replace_stage() {
+  return kind_of<StageInput, ReplaceInput>(
+      "replace", "puts stones of another set in the place of those there, of the same volume");
+}
+
+}  // namespace trackbed
