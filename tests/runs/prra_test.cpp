@@ -8,7 +8,6 @@
 #include "lab/in_touch.h"
 #include "lab/measures/measures.h"
 #include "lab/run.h"
-#include "scenes/temporary_folder.h"
 
 namespace trackbed {
 namespace {
@@ -63,7 +62,6 @@ name = "rest"
 struct Bed {
   Simulation sim;
   std::vector<double> volumes;  // of the balls, by id [m^3]
-  double mass = 0;              // of the balls [kg]
   double factor = 1;            // by which sizes were changed
 
   Bed() {
@@ -89,7 +87,6 @@ struct Bed {
     volumes.resize(sim.state.clumps.id.size());
     for (std::size_t k = 0; k < volumes.size(); ++k)
       volumes[static_cast<std::size_t>(sim.state.clumps.id[k])] = volume_of(sim, k);
-    for (double m : sim.state.clumps.mass) mass += m;
   }
 };
 

@@ -32,6 +32,9 @@ void Parting::open(Simulation& sim) {
   damping_ = sim.model.local_damping;
   limits_ = sim.model.limits;
   pairs_ = sim.model.pairs;
+  smallest_ = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < sim.state.clumps.id.size(); ++k)
+    smallest_ = std::min(smallest_, equal_volume_radius(sim, k));
   sim.model.gravity = Vec3::Zero();
   sim.model.local_damping = 0.7;
   sim.model.limits.overlap = sim.model.limits.speed = std::numeric_limits<double>::infinity();
@@ -43,9 +46,7 @@ void Parting::control(Simulation& sim) const {
   constexpr int stop_every = 50;
   if (sim.state.step % stop_every == 0) return sim.stop_stones();
   const Clumps& c = sim.state.clumps;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < c.id.size(); ++k) smallest = std::min(smallest, equal_volume_radius(sim, k));
-  const double limit = 0.01 * smallest / sim.state.planned_dt;
+  const double limit = 0.01 * smallest_ / sim.state.planned_dt;
   for (std::size_t k = 0; k < c.id.size(); ++k) {
     const double bound =
         c.scale[k] * sim.model.templates[static_cast<std::size_t>(c.shape[k])].bounding_radius;

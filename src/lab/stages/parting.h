@@ -31,6 +31,7 @@ class Parting {
 
  private:
   double start_ = 0, damping_ = 0;
+  double smallest_ = 0;  // equal-volume radius [m]
   Limits limits_;
   Vec3 gravity_ = Vec3::Zero();
   PairTable pairs_;
