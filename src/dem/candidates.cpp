@@ -28,31 +28,48 @@ bool is_before(const PebblePair& x, const PebblePair& y) {
   return x.a != y.a ? x.a < y.a : x.b < y.b;
 }
 
-/// Pebble pairs of two clumps with less than the skin between them, in the order of the walk.
-void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj, double sj,
-                     const Relative& pose, double skin, Scratch& s) {
+/// Two stones as the search sees them, in the frame of stone i.
+struct TwoStones {
+  const ClumpTemplate &i, &j;
+  double scale_i, scale_j;
+  Vec3 offset;
+  Mat3 turn;
+
+  TwoStones(const Model& model, const Clumps& c, const ClumpPair& pair, const Relative& pose)
+      : i(model.templates[static_cast<Index>(c.shape[static_cast<Index>(pair.i)])]),
+        j(model.templates[static_cast<Index>(c.shape[static_cast<Index>(pair.j)])]),
+        scale_i(c.scale[static_cast<Index>(pair.i)]),
+        scale_j(c.scale[static_cast<Index>(pair.j)]),
+        offset(pose.offset),
+        turn(scale_j * pose.turn.toRotationMatrix()) {}
+
+  template <class Sphere>
+  bool are_within(double skin, const Sphere& a, const Sphere& b) const {
+    const double reach = scale_i * a.radius + scale_j * b.radius + skin;
+    return (offset + turn * b.centre - scale_i * a.centre).squaredNorm() <= reach * reach;
+  }
+
+  /// Neither tree has more than its root.
+  bool are_simple() const { return i.tree.nodes.size() == 1 && j.tree.nodes.size() == 1; }
+};
+
+/// Pebble pairs with less than the skin between them, by a walk of the two trees against each other.
+void walk_trees(const TwoStones& two, double skin, Scratch& s) {
   s.found.clear();
   s.stack.assign(1, {0, 0});
-  const Mat3 turn = pose.turn.toRotationMatrix();
   while (!s.stack.empty()) {
     const auto [a, b] = s.stack.back();
     s.stack.pop_back();
-    const SphereTree::Node& na = ti.tree.nodes[static_cast<Index>(a)];
-    const SphereTree::Node& nb = tj.tree.nodes[static_cast<Index>(b)];
-    const Vec3 cb = pose.offset + sj * (turn * nb.bound.centre);
-    const double near = si * na.bound.radius + sj * nb.bound.radius + skin;
-    if ((cb - si * na.bound.centre).squaredNorm() > near * near) continue;
+    const SphereTree::Node& na = two.i.tree.nodes[static_cast<Index>(a)];
+    const SphereTree::Node& nb = two.j.tree.nodes[static_cast<Index>(b)];
+    if (!two.are_within(skin, na.bound, nb.bound)) continue;
+    const bool i_is_larger = two.scale_i * na.bound.radius >= two.scale_j * nb.bound.radius;
     if (na.is_leaf() && nb.is_leaf()) {
-      for (int l = nb.first; l < nb.first + nb.count; ++l) {
-        const Pebble& pb = tj.pebbles[static_cast<Index>(l)];
-        const Vec3 xb = pose.offset + turn * (sj * pb.centre);
-        for (int k = na.first; k < na.first + na.count; ++k) {
-          const Pebble& pa = ti.pebbles[static_cast<Index>(k)];
-          const double reach = si * pa.radius + sj * pb.radius + skin;
-          if ((xb - si * pa.centre).squaredNorm() <= reach * reach) s.found.push_back({k, l});
-        }
-      }
-    } else if (nb.is_leaf() || (!na.is_leaf() && si * na.bound.radius >= sj * nb.bound.radius)) {
+      for (int l = nb.first; l < nb.first + nb.count; ++l)
+        for (int k = na.first; k < na.first + na.count; ++k)
+          if (two.are_within(skin, two.i.pebbles[static_cast<Index>(k)], two.j.pebbles[static_cast<Index>(l)]))
+            s.found.push_back({k, l});
+    } else if (nb.is_leaf() || (!na.is_leaf() && i_is_larger)) {
       s.stack.emplace_back(na.right, b);
       s.stack.emplace_back(a + 1, b);
     } else {
@@ -60,16 +77,27 @@ void find_candidates(const ClumpTemplate& ti, double si, const ClumpTemplate& tj
       s.stack.emplace_back(a, b + 1);
     }
   }
+  std::sort(s.found.begin(), s.found.end(), is_before);
+}
+
+/// Those of a list with less than the skin between them.
+void prune(const TwoStones& two, double skin, const std::vector<PebblePair>& list, Scratch& s) {
+  s.found.clear();
+  for (const PebblePair& p : list)
+    if (two.are_within(skin, two.i.pebbles[static_cast<Index>(p.a)], two.j.pebbles[static_cast<Index>(p.b)]))
+      s.found.push_back(p);
 }
 
 /// Adds the candidates that touched in the last step, however far they are now: their contacts have yet to be
 /// ended, and their energy booked. Sorts all.
 void keep_touching(const PairBlock& block, const ClumpPair& p, Scratch& s) {
+  const Index n = s.found.size();
   for (Index k = static_cast<Index>(p.first); k < static_cast<Index>(p.first + p.count); ++k)
-    if (block.memory[k].touches()) s.found.push_back(block.keys[k]);
-  std::sort(s.found.begin(), s.found.end(), is_before);
-  const auto same = [](const PebblePair& x, const PebblePair& y) { return x.a == y.a && x.b == y.b; };
-  s.found.erase(std::unique(s.found.begin(), s.found.end(), same), s.found.end());
+    if (block.memory[k].touches() &&
+        !std::binary_search(s.found.begin(), s.found.begin() + static_cast<std::ptrdiff_t>(n), block.keys[k],
+                            is_before))
+      s.found.push_back(block.keys[k]);
+  if (s.found.size() > n) std::sort(s.found.begin(), s.found.end(), is_before);
 }
 
 /// Puts the found candidates in the place of the pair's old ones; touching contacts keep their memory.
@@ -106,6 +134,21 @@ struct DuePair {
   Index pair;
 };
 
+/// The candidates of two stones: from the list of what was near when the trees were last walked, or by a walk
+/// if that list is too old. `reach`: bounding radius of stone j [m].
+void find_candidates(const TwoStones& two, const Skin& skin, const Relative& now, double reach,
+                     const DuePair& due, Scratch& s) {
+  if (skin.inner == skin.outer) return walk_trees(two, skin.outer, s);
+  if (due.geometry.near.size() < due.block.pairs.size()) due.geometry.near.resize(due.block.pairs.size());
+  NearPebbles& near = due.geometry.near[due.pair];
+  if (near.search.range < skin.inner + motion_since(near.search, now, reach)) {
+    walk_trees(two, skin.outer, s);
+    near.pairs.assign(s.found.begin(), s.found.end());
+    near.search = {now.offset, now.turn, skin.outer};
+  }
+  prune(two, skin.inner, near.pairs, s);
+}
+
 /// Measures how far the two stones have moved; looks for their candidates if that is too far. Returns whether
 /// the pair's list is a new one.
 bool search_pair(const Model& model, const State& state, const Workspace& work, const DuePair& due) {
@@ -121,18 +164,21 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
     return false;
   }
   const double apart = now.offset.norm() - work.bound[i] - work.bound[j];
-  const double skin = skin_of(state, work, speed_of(state, work, i) + speed_of(state, work, j));
+  const TwoStones two(model, c, pair, now);
+  Skin skin = skin_of(state, work, speed_of(state, work, i) + speed_of(state, work, j));
+  if (two.are_simple()) skin.inner = skin.outer;  // nothing to choose from
   scratch().found.clear();
-  if (apart <= skin)
-    find_candidates(model.templates[static_cast<Index>(c.shape[i])], c.scale[i],
-                    model.templates[static_cast<Index>(c.shape[j])], c.scale[j], now, skin, scratch());
-  const bool has_list = apart <= skin || pair.count > 0;
+  if (apart <= skin.inner)
+    find_candidates(two, skin, now, work.bound[j], due, scratch());
+  else if (due.pair < due.geometry.near.size())
+    due.geometry.near[due.pair] = {};
+  const bool has_list = apart <= skin.inner || pair.count > 0;
   if (has_list) {
     keep_touching(due.block, pair, scratch());
     replace_candidates(due.pair, scratch(), due.block);
   }
   // Stones that are far apart touch no sooner than when they have come nearer by that much.
-  const double range = std::max(apart, skin);
+  const double range = std::max(apart, skin.inner);
   search = {now.offset, now.turn, range};
   due.geometry.due[due.pair] = travel + range;
   return has_list;

@@ -54,7 +54,7 @@ bool stone_meets_wall(const Model& model, const State& state, int clump, int wal
     const Vec3 p = state.walls[w].pose.to_body(stone.to_world(c.scale[i] * centre));
     const double reach = c.scale[i] * radius + clearance;
     if (shape.is_plane) return p.z() < reach;
-    return any_near_facet(shape, p, reach, [](int) { return true; });
+    return any_near_facet(shape, p, reach, [](int, double) { return true; });
   };
   return t.tree.any([&](const Sphere& bound) { return meets(bound.centre, bound.radius); },
                     [&](int p) {

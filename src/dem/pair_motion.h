@@ -12,14 +12,21 @@ namespace trackbed {
 /// step.
 inline constexpr double nearly_used_up = 0.25;
 
-/// How near pebbles must be to become candidates of a pair [m]: a small distance keeps idle candidates out of
-/// the lists of bodies that hardly move, a larger one spares fast ones a search at every step. `speed`: sum
-/// of those of the bodies' farthest points [m/s].
-inline double skin_of(const State& state, const Workspace& work, double speed) {
-  constexpr double lasts = 200, smallest = 0.1;  // steps; share of the largest skin
+/// How near pebbles must be to become candidates of a pair (inner), and to be listed for the choice of
+/// candidates (outer) [m].
+struct Skin {
+  double inner, outer;
+};
+
+/// Small distances keep idle candidates out of the lists of bodies that hardly move, larger ones spare fast
+/// bodies a search at every step. `speed`: sum of those of the bodies' farthest points [m/s].
+inline Skin skin_of(const State& state, const Workspace& work, double speed) {
   // Before there are stones the planned step is endless, and the way not a number when they come at rest.
-  const double way = lasts * state.planned_dt * speed;
-  return way < work.skin ? std::max(way, smallest * work.skin) : work.skin;
+  const auto lasting = [&](int steps, double smallest_share) {
+    const double way = steps * state.planned_dt * speed;
+    return way < work.skin ? std::max(way, smallest_share * work.skin) : work.skin;
+  };
+  return {lasting(50, 0.02), lasting(1000, 0.2)};
 }
 
 /// Speed of a stone's farthest point [m/s].

@@ -93,7 +93,7 @@ std::vector<std::pair<int, int>> near_clumps(const Clumps& clumps, const Workspa
 
 bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
   if (shape.is_plane) return centre.z() < radius;
-  return any_near_facet(shape, centre, radius, [](int) { return true; });
+  return any_near_facet(shape, centre, radius, [](int, double) { return true; });
 }
 
 /// All (wall, clump) with less than the margin between the wall and the bounding sphere, ascending.
@@ -248,8 +248,12 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
     if (!found) continue;
     carry(state.pair_blocks[found->first], found->second, blocks.back());
     if (!with_search) continue;
-    geometry.back().search.back() = work.pair_geometry[found->first].search[found->second];
-    geometry.back().due.back() = work.pair_geometry[found->first].due[found->second];
+    PairGeometry& old = work.pair_geometry[found->first];
+    geometry.back().search.back() = old.search[found->second];
+    geometry.back().due.back() = old.due[found->second];
+    if (found->second >= old.near.size()) continue;
+    geometry.back().near.resize(geometry.back().due.size());
+    geometry.back().near.back() = std::move(old.near[found->second]);
   }
   state.pair_blocks = std::move(blocks);
   work.pair_geometry = std::move(geometry);
@@ -281,6 +285,7 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
   work.wall_geometry.assign(state.wall_blocks.size(), {});
   for (Index b = 0; b < state.wall_blocks.size(); ++b) {
     work.wall_geometry[b].search.resize(state.wall_blocks[b].pairs.size());
+    work.wall_geometry[b].tested.resize(state.wall_blocks[b].pairs.size(), 0.0);
     work.wall_geometry[b].due.resize(state.wall_blocks[b].pairs.size(), -1);
     work.wall_geometry[b].candidates.resize(state.wall_blocks[b].keys.size());
   }

@@ -24,18 +24,35 @@ double travel_of(const Workspace& work, const WallPair& p) {
   return work.travel[static_cast<Index>(p.clump)] + work.wall_travel[static_cast<Index>(p.wall)];
 }
 
+Skin skin_of(const Model& model, const State& state, const Workspace& work, const WallPair& p) {
+  const Index w = static_cast<Index>(p.wall);
+  const WallState& wall = state.walls[w];
+  return skin_of(state, work,
+                 speed_of(state, work, static_cast<Index>(p.clump)) + wall.velocity.norm() +
+                     model.walls[w].shape.reach * wall.angular_velocity.norm());
+}
+
+/// Leaves out the candidates of a pair that stay too far from the wall until its bodies, which have moved by
+/// `moved` since the search, have gone a little further.
+void choose_tested(const Workspace& work, const WallPair& p, Index pair, double moved, double step,
+                   WallGeometry& geometry) {
+  step = std::min(step, geometry.search[pair].range - moved);
+  geometry.due[pair] = travel_of(work, p) + step;
+  geometry.tested[pair] = moved + step;
+}
+
 /// Measures the motion of the pairs that are due; whether one of them needs a new list.
-bool must_search(const State& state, const Workspace& work, const WallBlock& block, WallGeometry& geometry) {
+bool must_search(const Model& model, const State& state, const Workspace& work, const WallBlock& block,
+                 WallGeometry& geometry) {
   bool must = false;
   for (Index k = 0; k < block.pairs.size(); ++k) {
     const PairSearch& search = geometry.search[k];
     const WallPair& p = block.pairs[k];
-    const double travel = travel_of(work, p);
-    if (travel <= geometry.due[k]) continue;
-    const double left = search.range - motion_since(search, stone_seen_from_wall(state, p),
-                                                    work.bound[static_cast<Index>(p.clump)]);
-    if (left > nearly_used_up * search.range)
-      geometry.due[k] = travel + left;
+    if (travel_of(work, p) <= geometry.due[k]) continue;
+    const double moved =
+        motion_since(search, stone_seen_from_wall(state, p), work.bound[static_cast<Index>(p.clump)]);
+    if (search.range - moved > nearly_used_up * search.range)
+      choose_tested(work, p, k, moved, skin_of(model, state, work, p).inner, geometry);
     else
       must = true;
   }
@@ -83,17 +100,17 @@ void append_candidates(const Model& model, const State& state, double skin, cons
   Index old = static_cast<Index>(p.first);
   const Index old_end = old + static_cast<Index>(p.count);
 
-  const auto append = [&](std::int32_t pebble, const WallMemory& memory, int first_facet) {
+  const auto append = [&](std::int32_t pebble, const WallMemory& memory, int first_facet, double gap) {
     const Pebble& shape = stone.pebbles[static_cast<Index>(pebble)];
     lists.keys.push_back(pebble);
     lists.memory.push_back(memory);
-    lists.candidates.push_back({scale * shape.centre, scale * shape.radius, first_facet,
+    lists.candidates.push_back({scale * shape.centre, scale * shape.radius, gap, first_facet,
                                 static_cast<int>(lists.facets.size()) - first_facet});
   };
   const auto keep_touching_before = [&](std::int32_t pebble) {
     for (; old < old_end && block.keys[old] < pebble; ++old)
       if (touches(block.memory[old]))
-        append(block.keys[old], block.memory[old], static_cast<int>(lists.facets.size()));
+        append(block.keys[old], block.memory[old], static_cast<int>(lists.facets.size()), 0.0);
   };
   const auto is_near = [&](const Sphere& bound) {
     const Vec3 centre = place(bound.centre);
@@ -109,13 +126,16 @@ void append_candidates(const Model& model, const State& state, double skin, cons
     if (wall.is_plane && centre.z() > radius) return false;
     keep_touching_before(pebble);
     const Index first = lists.facets.size();
-    any_near_facet(wall, centre, radius, [&](int f) {
+    double nearest2 = std::numeric_limits<double>::infinity();
+    any_near_facet(wall, centre, radius, [&](int f, double distance2) {
       lists.facets.push_back(f);
+      nearest2 = std::min(nearest2, distance2);
       return false;
     });
     if (!wall.is_plane && lists.facets.size() == first) return false;
     const bool is_known = old < old_end && block.keys[old] == pebble;
-    append(pebble, is_known ? block.memory[old++] : WallMemory{}, static_cast<int>(first));
+    append(pebble, is_known ? block.memory[old++] : WallMemory{}, static_cast<int>(first),
+           (wall.is_plane ? centre.z() : std::sqrt(nearest2)) - scale * shape.radius);
     return false;
   });
   keep_touching_before(static_cast<std::int32_t>(stone.pebbles.size()));
@@ -126,7 +146,7 @@ void append_candidates(const Model& model, const State& state, double skin, cons
 void refresh(const Model& model, const State& state, const Workspace& work, WallBlock& block,
              WallGeometry& geometry) {
   // If one pair needs a new list, the whole small block gets one.
-  if (!must_search(state, work, block, geometry)) {
+  if (!must_search(model, state, work, block, geometry)) {
     rest(work, block, geometry);
     return;
   }
@@ -135,16 +155,13 @@ void refresh(const Model& model, const State& state, const Workspace& work, Wall
   for (Index k = 0; k < block.pairs.size(); ++k) {
     WallPair& p = block.pairs[k];
     const int first = static_cast<int>(lists.keys.size());
-    const WallState& wall = state.walls[static_cast<Index>(p.wall)];
-    const double speed = speed_of(state, work, static_cast<Index>(p.clump)) + wall.velocity.norm() +
-                         model.walls[static_cast<Index>(p.wall)].shape.reach * wall.angular_velocity.norm();
-    const double skin = skin_of(state, work, speed);
-    append_candidates(model, state, skin, block, p, lists);
+    const Skin skin = skin_of(model, state, work, p);
+    append_candidates(model, state, skin.outer, block, p, lists);
     p.first = first;
     p.count = static_cast<int>(lists.keys.size()) - first;
     const Relative seen = stone_seen_from_wall(state, p);
-    geometry.search[k] = {seen.offset, seen.turn, skin};
-    geometry.due[k] = travel_of(work, p) + skin;
+    geometry.search[k] = {seen.offset, seen.turn, skin.outer};
+    choose_tested(work, p, k, 0.0, skin.inner, geometry);
   }
   block.keys = lists.keys;
   block.memory = lists.memory;

@@ -132,9 +132,10 @@ ContactKinematics opening_of(const PairMotion& m, const Vec3& normal, double rad
 
 /// Adds the touching places of a pair to `s`, and ends the contacts that have opened.
 void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& geometry,
-                  const ContactProperties& p, double dt, WallBlock& block, Touches& s, Losses& losses) {
+                  double tested, const ContactProperties& p, double dt, WallBlock& block, Touches& s, Losses& losses) {
   for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
     const WallCandidate& c = geometry.candidates[k];
+    if (c.gap > tested) continue;
     const Vec3 lever = f.clump_rotation * c.centre;
     const Places places = places_of(f, c, lever, geometry.facets.data());
     WallMemory& memory = block.memory[k];
@@ -224,7 +225,7 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
     s.motions.back().properties = model.pairs.index(state.clumps.material[c], model.walls[w].material);
     const WallFrame f{model.walls[w].shape, state.clumps.orientation[c].toRotationMatrix(),
                       work.wall_rotation[w], shift};
-    find_touches(f, pair, geometry, model.pairs[s.motions.back().properties], dt, block, s,
+    find_touches(f, pair, geometry, geometry.tested[k], model.pairs[s.motions.back().properties], dt, block, s,
                  results[k].losses);
   }
   respond(model, s, dt, results);

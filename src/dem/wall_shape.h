@@ -51,8 +51,8 @@ using WallPoints = std::array<WallPoint, max_wall_points>;
 int touching_points(const WallShape& shape, const int* near, int n_near, const Vec3& centre, double radius,
                     WallPoints& points);
 
-/// Visits, ascending, the facets of a mesh nearer to `centre` than `radius`, until visit(facet) returns true.
-/// Returns whether it did.
+/// Visits, ascending, the facets of a mesh nearer to `centre` than `radius`, until visit(facet, square of the
+/// distance) returns true. Returns whether it did.
 template <class Visit>
 bool any_near_facet(const WallShape& shape, const Vec3& centre, double radius, Visit&& visit);
 
@@ -68,7 +68,8 @@ bool any_near_facet(const WallShape& shape, const Vec3& centre, double radius, V
       },
       [&](int f) {
         const Vec3 q = closest_point(shape.facets[static_cast<std::size_t>(f)], centre);
-        return (q - centre).squaredNorm() <= radius * radius && visit(f);
+        const double distance2 = (q - centre).squaredNorm();
+        return distance2 <= radius * radius && visit(f, distance2);
       });
 }
 

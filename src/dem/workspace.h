@@ -19,6 +19,13 @@ struct PairSearch {
   double range = -1;             // motion since then that the list allows; negative: there is none yet [m]
 };
 
+/// Pebble pairs among which the candidates of a pair are, while the motion of its bodies and the skin of
+/// the candidates together are less than the range.
+struct NearPebbles {
+  std::vector<PebblePair> pairs;
+  PairSearch search;
+};
+
 /// Two pebbles that may touch.
 struct Candidate {
   int i, j;        // clumps
@@ -30,6 +37,7 @@ struct Candidate {
 /// Beside a PairBlock.
 struct PairGeometry {
   std::vector<PairSearch> search;
+  std::vector<NearPebbles> near;      // empty while no pair has needed one
   std::vector<double> due;            // sum of both clumps' travel at which their motion must be measured [m]
   std::vector<Candidate> candidates;  // beside the keys
   bool is_centred = false;            // each candidate's pebbles stand in the centres of their stones
@@ -41,12 +49,14 @@ struct PairGeometry {
 struct WallCandidate {
   Vec3 centre;                // in the frame of the clump [m]
   double radius;              // [m]
+  double gap;                 // to the wall when the pair was searched [m]
   int first_facet, n_facets;  // in WallGeometry::facets
 };
 
 /// Beside a WallBlock.
 struct WallGeometry {
   std::vector<PairSearch> search;
+  std::vector<double> tested;  // candidates of a pair with a larger gap cannot touch before the pair is due [m]
   std::vector<double> due;  // sum of clump's and wall's travel at which their motion must be measured [m]
   std::vector<WallCandidate> candidates;
   std::vector<int> facets;
