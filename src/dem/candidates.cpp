@@ -67,7 +67,8 @@ void walk_trees(const TwoStones& two, double skin, Scratch& s) {
     if (na.is_leaf() && nb.is_leaf()) {
       for (int l = nb.first; l < nb.first + nb.count; ++l)
         for (int k = na.first; k < na.first + na.count; ++k)
-          if (two.are_within(skin, two.i.pebbles[static_cast<Index>(k)], two.j.pebbles[static_cast<Index>(l)]))
+          if (two.are_within(skin, two.i.pebbles[static_cast<Index>(k)],
+                             two.j.pebbles[static_cast<Index>(l)]))
             s.found.push_back({k, l});
     } else if (nb.is_leaf() || (!na.is_leaf() && i_is_larger)) {
       s.stack.emplace_back(na.right, b);

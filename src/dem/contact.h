@@ -1,6 +1,6 @@
 // One touching contact: its motion, its memory, its force. Bodies are numbered 1 and 2; the normal points
 // from 1 to 2; force and moment are those that body 2 receives; pressing is positive. All for one contact
-// (double) or for four at once (Lanes).
+// (double) or for several at once (Lanes).
 #pragma once
 
 #include "base/lanes.h"

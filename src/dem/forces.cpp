@@ -1,4 +1,4 @@
-// Contacts between stones, four at a time, and the sums of all forces.
+// Contacts between stones, as many at a time as there are lanes, and the sums of all forces.
 #include "dem/forces.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ namespace {
 
 using Index = std::size_t;
 
-/// Four candidates and their memories; the last one stands in for those that are missing.
-struct Four {
+/// A candidate in each lane and its memory; the last one stands in for those that are missing.
+struct Batch {
   std::array<const Candidate*, Lanes::size> candidate;
   std::array<ContactMemory*, Lanes::size> memory;
   bool is_centred;  // as PairGeometry has it: nothing needs to be turned
@@ -37,7 +37,7 @@ struct Places {
   Lanes radius_a, reach;  // reach: sum of the radii [m]
 };
 
-/// Centres of four pebbles from the centres of mass of their stones, and their radii.
+/// Centres of pebbles from the centres of mass of their stones, and their radii.
 template <class Motion>
 Vec3Of<Lanes> place(const Motion& motion, const std::array<const Row*, Lanes::size>& pebble,
                     const Lanes& scale, Lanes& radius) {
@@ -48,7 +48,7 @@ Vec3Of<Lanes> place(const Motion& motion, const std::array<const Row*, Lanes::si
   return rotated<Lanes>({w, v.x(), v.y(), v.z()}, body);
 }
 
-Places places_of(const Workspace& work, const Four& f) {
+Places places_of(const Workspace& work, const Batch& f) {
   const auto motion_i = f.motions(work, &Candidate::i), motion_j = f.motions(work, &Candidate::j);
   std::array<const Row*, Lanes::size> a, b;
   for (Index k = 0; k < a.size(); ++k) {
@@ -60,9 +60,7 @@ Places places_of(const Workspace& work, const Four& f) {
   const Vec3Of<Lanes> x_i = gather([&](Index k) { return motion_i(k).position; }, scale_i);
   p.shift = gather([&](Index k) { return motion_j(k).position; }, scale_j) - x_i;
   if (f.is_centred) {
-    const auto radii = [](const auto& pebble) {
-      return Lanes((*pebble[0])[3], (*pebble[1])[3], (*pebble[2])[3], (*pebble[3])[3]);
-    };
+    const auto radii = [](const auto& pebble) { return each_lane([&](Index k) { return (*pebble[k])[3]; }); };
     p.radius_a = scale_i * radii(a);
     radius_b = scale_j * radii(b);
     p.centre = Vec3Of<Lanes>::Zero();
@@ -82,7 +80,7 @@ struct Motions {
   Lanes reduced_mass;
 };
 
-Motions motions_of(const Workspace& work, const Four& f, const Vec3Of<Lanes>& shift) {
+Motions motions_of(const Workspace& work, const Batch& f, const Vec3Of<Lanes>& shift) {
   const auto motion_i = f.motions(work, &Candidate::i), motion_j = f.motions(work, &Candidate::j);
   Lanes mass_i, mass_j, unused;
   const Vec3Of<Lanes> v_i = gather([&](Index k) { return motion_i(k).velocity; }, mass_i);
@@ -114,13 +112,12 @@ void end_contact(const ContactProperties& p, const Places& at, const Motions& m,
 
 /// Adds the responses in the lanes of `touching` to the sums of their stones.
 template <class Law>
-void hand_out(const Four& f, unsigned touching, const Vec3Of<Lanes>& shift, const Response& r,
+void hand_out(const Batch& f, unsigned touching, const Vec3Of<Lanes>& shift, const Response& r,
               const ContactProperties& p, Workspace& work) {
   const Vec3Of<Lanes> on_j = r.moment - shift.cross(r.force);
-  std::array<Row, Lanes::size> force{r.force.x(), r.force.y(), r.force.z(), 0.0},
-      moment_i{r.moment.x(), r.moment.y(), r.moment.z(), -r.losses.friction},
-      moment_j{on_j.x(), on_j.y(), on_j.z(), 0.0};
-  for (auto* rows : {&force, &moment_i, &moment_j}) transpose((*rows)[0], (*rows)[1], (*rows)[2], (*rows)[3]);
+  const Rows force = rows_of({r.force.x(), r.force.y(), r.force.z(), Lanes(0.0)}),
+             moment_i = rows_of({r.moment.x(), r.moment.y(), r.moment.z(), -r.losses.friction}),
+             moment_j = rows_of({on_j.x(), on_j.y(), on_j.z(), Lanes(0.0)});
   const bool has_rare_losses = Law::rolls || p.dashpot.normal > 0 || p.dashpot.shear > 0;
   for (Index k = 0; k < Lanes::size; ++k) {
     if (!(touching >> k & 1u)) continue;
@@ -138,9 +135,9 @@ void hand_out(const Four& f, unsigned touching, const Vec3Of<Lanes>& shift, cons
   }
 }
 
-/// Lets four candidates respond, those in the lanes of `wanted`; returns how many touch.
+/// Lets the candidates of a batch respond, those in the lanes of `wanted`; returns how many touch.
 template <class Law>
-int respond(const Four& f, unsigned wanted, const ContactProperties& p, double dt, Workspace& work) {
+int respond(const Batch& f, unsigned wanted, const ContactProperties& p, double dt, Workspace& work) {
   const Places at = places_of(work, f);
   const unsigned touching = wanted & bits(at.distance2 < at.reach * at.reach);
   unsigned opened = 0;
@@ -192,7 +189,7 @@ void prefetch(const PairBlock& block, const PairGeometry& geometry) {
   int touching = 0;
   const Index n = geometry.candidates.size();
   for (Index first = 0; first < n; first += Lanes::size) {
-    Four f;
+    Batch f;
     f.is_centred = geometry.is_centred;
     for (Index k = 0; k < Lanes::size; ++k) {
       const Index at = std::min(first + k, n - 1);

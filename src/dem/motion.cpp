@@ -94,14 +94,14 @@ void turn_evenly(Turning<Real>& t, const Vec3Of<Real>& moment, const Vec3Of<Real
   t.spin = mobility.x() * t.angular_momentum;
 }
 
-/// Four stones on their way: a stone in each lane.
+/// Stones on their way: one in each lane.
 struct Movers {
   Vec3Of<Lanes> inertia, position, velocity, force, moment;
   Turning<Lanes> turning;
   Lanes mass, bound, travel;
 };
 
-/// One step of four stones; returns the lengths of way of their farthest points [m].
+/// One step of several stones; returns the lengths of way of their farthest points [m].
 Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
   const double alpha = model.local_damping;
   const Vec3Of<Lanes> gravity(model.gravity.x(), model.gravity.y(), model.gravity.z());
@@ -127,18 +127,18 @@ Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
   return way;
 }
 
-/// Up to four stones from `first` on; the last one stands in for those that are missing.
-struct Quartet {
+/// Consecutive stones, one a lane, from `first` on; the last one stands in for those that are missing.
+struct Batch {
   std::array<Index, Lanes::size> at;
   int count;
 
-  Quartet(Index first, Index n) : count(static_cast<int>(std::min<Index>(Lanes::size, n - first))) {
+  Batch(Index first, Index n) : count(static_cast<int>(std::min<Index>(Lanes::size, n - first))) {
     for (Index k = 0; k < at.size(); ++k) at[k] = std::min(first + k, n - 1);
   }
   Vec3Of<Lanes> load(const std::vector<Vec3>& from) const {
     if (count == Lanes::size) return load_vectors(&from[at[0]]);
     Vec3Of<Lanes> v;
-    for (int a = 0; a < 3; ++a) v[a] = {from[at[0]][a], from[at[1]][a], from[at[2]][a], from[at[3]][a]};
+    for (int a = 0; a < 3; ++a) v[a] = each_lane([&](Index k) { return from[at[k]][a]; });
     return v;
   }
   void store(const Vec3Of<Lanes>& v, std::vector<Vec3>& to) const {
@@ -146,16 +146,17 @@ struct Quartet {
     for (int k = 0; k < count; ++k) to[at[static_cast<Index>(k)]] = {v.x()[k], v.y()[k], v.z()[k]};
   }
   Lanes load(const std::vector<double>& from) const {
-    return {from[at[0]], from[at[1]], from[at[2]], from[at[3]]};
+    if (count == Lanes::size) return Lanes::load(&from[at[0]]);
+    return each_lane([&](Index k) { return from[at[k]]; });
   }
   void store(Lanes v, std::vector<double>& to) const {
     for (int k = 0; k < count; ++k) to[at[static_cast<Index>(k)]] = v[k];
   }
 };
 
-/// Moves one quartet; returns the longest way of its stones [m].
-[[gnu::flatten]] double move_quartet(const Model& model, State& state, Workspace& work, const Quartet& q,
-                                     double kick_time, double dt) {
+/// Moves one batch; returns the longest way of its stones [m].
+[[gnu::flatten]] double move_batch(const Model& model, State& state, Workspace& work, const Batch& q,
+                                   double kick_time, double dt) {
   Clumps& c = state.clumps;
   Movers m;
   m.inertia = q.load(c.inertia);
@@ -167,11 +168,12 @@ struct Quartet {
   m.mass = q.load(c.mass);
   m.bound = q.load(work.bound);
   m.travel = q.load(work.travel);
-  std::array<Lanes, 4> turn;  // x, y, z, w as Eigen stores them
-  for (Index k = 0; k < 4; ++k) turn[k] = Lanes::load(c.orientation[q.at[k]].coeffs().data());
-  transpose(turn[0], turn[1], turn[2], turn[3]);
+  Rows orientations;  // x, y, z, w as Eigen stores them
+  for (Index k = 0; k < orientations.size(); ++k)
+    orientations[k] = Row::load(c.orientation[q.at[k]].coeffs().data());
+  const Columns turn = columns_of(orientations);
   m.turning.turn = {turn[3], turn[0], turn[1], turn[2]};
-  for (Index k = 0; k < 4; ++k) m.turning.damping_loss.pack[static_cast<int>(k)] = c.losses[q.at[k]].damping;
+  m.turning.damping_loss = each_lane([&](Index k) { return c.losses[q.at[k]].damping; });
 
   const Lanes ways = move(model, m, kick_time, dt);
 
@@ -181,17 +183,18 @@ struct Quartet {
   q.store(m.turning.spin, c.angular_velocity);
   q.store(m.travel, work.travel);
   const Vec3Of<Lanes>& w = m.turning.spin;
-  std::array<Row, 4> position{m.position.x(), m.position.y(), m.position.z(), q.load(c.scale)},
-      velocity{m.velocity.x(), m.velocity.y(), m.velocity.z(), m.mass}, spin{w.x(), w.y(), w.z(), 0.0};
-  const auto to_rows = [](std::array<Row, 4>& r) { transpose(r[0], r[1], r[2], r[3]); };
-  turn = {m.turning.turn[1], m.turning.turn[2], m.turning.turn[3], m.turning.turn[0]};
-  for (auto* rows : {&position, &velocity, &spin, &turn}) to_rows(*rows);
+  const auto rows = [](const Vec3Of<Lanes>& v, Lanes fourth) {
+    return rows_of({v.x(), v.y(), v.z(), fourth});
+  };
+  const auto& [tw, tx, ty, tz] = m.turning.turn;
+  const Rows position = rows(m.position, q.load(c.scale)), velocity = rows(m.velocity, m.mass),
+             spin = rows(w, Lanes(0.0)), turns = rows_of({tx, ty, tz, tw});
   double way = 0;
   for (Index k = 0; k < static_cast<Index>(q.count); ++k) {
     const Index at = q.at[k];
-    turn[k].store(c.orientation[at].coeffs().data());
+    turns[k].store(c.orientation[at].coeffs().data());
     c.losses[at].damping = m.turning.damping_loss[static_cast<int>(k)];
-    work.motion[at] = {position[k], velocity[k], spin[k], turn[k]};
+    work.motion[at] = {position[k], velocity[k], spin[k], turns[k]};
     way = std::max(way, ways[static_cast<int>(k)]);
   }
   return way;
@@ -260,11 +263,11 @@ void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
   double way = 0;
   const Index n = state.clumps.id.size();
-  const int quartets = static_cast<int>((n + Lanes::size - 1) / Lanes::size);
-#pragma omp parallel for schedule(static) reduction(max : way) if (quartets > 16)
-  for (int k = 0; k < quartets; ++k)
-    way = std::max(way, move_quartet(model, state, work, Quartet(static_cast<Index>(k) * Lanes::size, n),
-                                     kick_time, dt));
+  const int batches = static_cast<int>((n + Lanes::size - 1) / Lanes::size);
+#pragma omp parallel for schedule(static) reduction(max : way) if (batches > 16)
+  for (int k = 0; k < batches; ++k)
+    way = std::max(
+        way, move_batch(model, state, work, Batch(static_cast<Index>(k) * Lanes::size, n), kick_time, dt));
   work.way += way;
 }
 

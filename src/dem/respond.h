@@ -1,4 +1,4 @@
-// The response of four contacts at a time, whatever their geometry comes from.
+// The response of several contacts at a time, whatever their geometry comes from.
 #pragma once
 
 #include <array>
@@ -9,17 +9,18 @@
 
 namespace trackbed {
 
-/// The rows that get(0) to get(3) give, turned into lanes.
+/// The rows that get(0), get(1), ... give, turned into lanes.
 template <class Get>
 Vec3Of<Lanes> gather(const Get& get, Lanes& fourth) {
-  Lanes a = get(0), b = get(1), c = get(2), d = get(3);
-  transpose(a, b, c, d);
-  fourth = d;
-  return {a, b, c};
+  Rows rows;
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k] = get(k);
+  const Columns c = columns_of(rows);
+  fourth = c[3];
+  return {c[0], c[1], c[2]};
 }
 
 /// One law and one set of properties at a time: visits the lanes of `wanted` that have the same number of
-/// properties together; almost always all four.
+/// properties together; almost always all.
 template <class PropertiesOf, class Visit>
 void by_properties(unsigned wanted, const PropertiesOf& properties_of, const Visit& visit) {
   while (wanted != 0) {
@@ -43,7 +44,7 @@ struct Response {
   LossesOf<Lanes> losses;
 };
 
-/// Lets a law answer the motion of four contacts; `lever` leads from the centre of mass of body 1 to the
+/// Lets a law answer the motion of contacts; `lever` leads from the centre of mass of body 1 to the
 /// contact. The memories in the lanes of `wanted` are brought up to date; what is worked out in the other
 /// lanes means nothing.
 template <class Law>
@@ -51,14 +52,12 @@ Response respond_with(const ContactKinematicsOf<Lanes>& k, const ContactProperti
                       const Vec3Of<Lanes>& lever, const std::array<ContactMemory*, Lanes::size>& memories,
                       unsigned wanted) {
   const auto load = [&](auto member) {
-    std::array<Row, Lanes::size> rows;
+    Rows rows;
     for (std::size_t n = 0; n < rows.size(); ++n) rows[n] = Row::load((memories[n]->*member).data());
-    transpose(rows[0], rows[1], rows[2], rows[3]);
-    return rows;
+    return columns_of(rows);
   };
   const auto store = [&](auto member, const Vec3Of<Lanes>& v, Lanes fourth) {
-    std::array<Row, Lanes::size> rows{v.x(), v.y(), v.z(), fourth};
-    transpose(rows[0], rows[1], rows[2], rows[3]);
+    const Rows rows = rows_of({v.x(), v.y(), v.z(), fourth});
     for (std::size_t n = 0; n < rows.size(); ++n)
       if (wanted >> n & 1u) rows[n].store((memories[n]->*member).data());
   };

@@ -1,4 +1,4 @@
-// Free rotation of a rigid body over one step, for one body (double) or four at once (Lanes).
+// Free rotation of a rigid body over one step, for one body (double) or several at once (Lanes).
 #pragma once
 
 #include <array>

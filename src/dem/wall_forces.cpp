@@ -113,7 +113,7 @@ PairMotion motion_of(const StoneMotion& stone, const Vec3& shift, const Wall& wa
   const Row spin = row_of(state.angular_velocity);
   m.shift = row_of(shift);
   m.spin = spin - stone.spin;
-  m.mean_spin = Lanes(0.5) * (spin + stone.spin);
+  m.mean_spin = Row(0.5) * (spin + stone.spin);
   m.velocity = row_of(state.velocity) - stone.velocity - cross(spin, m.shift);
   m.velocity.pack[3] = mass;
   return m;
@@ -131,8 +131,8 @@ ContactKinematics opening_of(const PairMotion& m, const Vec3& normal, double rad
 }
 
 /// Adds the touching places of a pair to `s`, and ends the contacts that have opened.
-void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& geometry,
-                  double tested, const ContactProperties& p, double dt, WallBlock& block, Touches& s, Losses& losses) {
+void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& geometry, double tested,
+                  const ContactProperties& p, double dt, WallBlock& block, Touches& s, Losses& losses) {
   for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
     const WallCandidate& c = geometry.candidates[k];
     if (c.gap > tested) continue;
@@ -156,12 +156,12 @@ void find_touches(const WallFrame& f, const WallPair& pair, const WallGeometry& 
   }
 }
 
-/// Four touches; the last one stands in for those that are missing.
-using Four = std::array<const Touch*, Lanes::size>;
+/// A touch in each lane; the last one stands in for those that are missing.
+using Batch = std::array<const Touch*, Lanes::size>;
 
-/// Lets four touches respond, those in the lanes of `wanted`.
+/// Lets the touches of a batch respond, those in the lanes of `wanted`.
 template <class Law>
-void respond(const Four& f, unsigned wanted, const Touches& s, const ContactProperties& p, double dt,
+void respond(const Batch& f, unsigned wanted, const Touches& s, const ContactProperties& p, double dt,
              WallResult* results) {
   const auto motion = [&](Index n) -> const PairMotion& { return s.motions[static_cast<Index>(f[n]->pair)]; };
   Lanes unused;
@@ -175,8 +175,9 @@ void respond(const Four& f, unsigned wanted, const Touches& s, const ContactProp
   k.velocity += k.spin.cross(lever);
   k.mean_twist = gather([&](Index n) { return motion(n).mean_spin; }, unused).dot(k.normal);
   const Vec3Of<Lanes> shift = gather([&](Index n) { return motion(n).shift; }, unused);
-  const Response r =
-      respond_with<Law>(k, p, lever, {f[0]->memory, f[1]->memory, f[2]->memory, f[3]->memory}, wanted);
+  std::array<ContactMemory*, Lanes::size> memories;
+  for (Index n = 0; n < memories.size(); ++n) memories[n] = f[n]->memory;
+  const Response r = respond_with<Law>(k, p, lever, memories, wanted);
   const Vec3Of<Lanes> on_wall = r.moment - shift.cross(r.force);
   for (int lane = 0; lane < Lanes::size; ++lane) {
     if (!(wanted >> lane & 1u)) continue;
@@ -195,7 +196,7 @@ void respond(const Four& f, unsigned wanted, const Touches& s, const ContactProp
 void respond(const Model& model, const Touches& s, double dt, WallResult* results) {
   const Index n = s.touches.size();
   for (Index first = 0; first < n; first += Lanes::size) {
-    Four f;
+    Batch f;
     for (Index k = 0; k < Lanes::size; ++k) f[k] = &s.touches[std::min(first + k, n - 1)];
     by_properties(
         lanes_of(n - first), [&](Index k) { return s.motions[static_cast<Index>(f[k]->pair)].properties; },
@@ -225,8 +226,8 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
     s.motions.back().properties = model.pairs.index(state.clumps.material[c], model.walls[w].material);
     const WallFrame f{model.walls[w].shape, state.clumps.orientation[c].toRotationMatrix(),
                       work.wall_rotation[w], shift};
-    find_touches(f, pair, geometry, geometry.tested[k], model.pairs[s.motions.back().properties], dt, block, s,
-                 results[k].losses);
+    find_touches(f, pair, geometry, geometry.tested[k], model.pairs[s.motions.back().properties], dt, block,
+                 s, results[k].losses);
   }
   respond(model, s, dt, results);
   return static_cast<int>(s.touches.size());

@@ -56,7 +56,8 @@ struct WallCandidate {
 /// Beside a WallBlock.
 struct WallGeometry {
   std::vector<PairSearch> search;
-  std::vector<double> tested;  // candidates of a pair with a larger gap cannot touch before the pair is due [m]
+  std::vector<double>
+      tested;               // candidates of a pair with a larger gap cannot touch before the pair is due [m]
   std::vector<double> due;  // sum of clump's and wall's travel at which their motion must be measured [m]
   std::vector<WallCandidate> candidates;
   std::vector<int> facets;
