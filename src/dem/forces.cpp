@@ -253,12 +253,17 @@ void gather_wall(const Model& model, State& state, const Workspace& work, Index 
     force += work.wall_results[static_cast<Index>(p)].force;
     moment += work.wall_results[static_cast<Index>(p)].moment_wall;
   }
-  // Work done on the stones by a wall that is moved, with the mean of the reactions before and after the
-  // step.
-  if (!model.walls[w].body)
-    wall.boundary_work -=
-        0.5 * dt *
-        ((wall.force + force).dot(wall.velocity) + (wall.moment + moment).dot(wall.angular_velocity));
+  // Work done on the stones by what keeps the velocity of a wall, or of a body along its blocked axes, with
+  // the mean of the reactions before and after the step.
+  const auto& body = model.walls[w].body;
+  Vec3 kept = wall.velocity;
+  for (int a = 0; a < 3; ++a)
+    if (body && !wall.held && body->free_shift[static_cast<Index>(a)]) kept[a] = 0;
+  Vec3 load = 0.5 * (wall.force + force);
+  if (body) load += body->mass * model.gravity;
+  if (body && !wall.held) load += wall.applied_force;
+  wall.boundary_work -= dt * load.dot(kept);
+  if (!body || wall.held) wall.boundary_work -= 0.5 * dt * (wall.moment + moment).dot(wall.angular_velocity);
   wall.force = force;
   wall.moment = moment;
 }

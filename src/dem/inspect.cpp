@@ -52,7 +52,7 @@ double kinetic_energy(const Model& model, const BodyProperties& body, const Wall
                       double& lost) {
   Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
   for (int a = 0; a < 3; ++a)
-    if (!body.free_shift[static_cast<Index>(a)]) unbalanced[a] = 0;
+    if (wall.held || !body.free_shift[static_cast<Index>(a)]) unbalanced[a] = 0;
   const Vec3 v =
       half_kicked(wall.velocity, unbalanced, Vec3::Constant(body.mass), model.local_damping, 0.5 * dt, lost);
   const Mat3 r = wall.pose.orientation.toRotationMatrix();

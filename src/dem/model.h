@@ -17,8 +17,9 @@ namespace trackbed {
 struct BodyProperties {
   double mass = 0;              // [kg]
   Vec3 inertia = Vec3::Zero();  // about the axes of the wall frame, which are principal [kg m^2]
-  std::array<bool, 3> free_shift{true, true, true};  // world axes in which it may move
-  std::array<bool, 3> free_turn{true, true, true};   // world axes about which it may turn
+  // World axes in which it may move; along the others it keeps the velocity it was given.
+  std::array<bool, 3> free_shift{true, true, true};
+  std::array<bool, 3> free_turn{true, true, true};  // world axes about which it may turn
 };
 
 /// A wall, fixed or moved, or a body such as the sleeper.

@@ -159,6 +159,7 @@ std::uint64_t hash(const State& state) {
   }
   for (const WallState& w : state.walls) {
     h.add(w.present);
+    h.add(w.held);
     for (const Vec3* v : {&w.pose.position, &w.velocity, &w.angular_velocity, &w.angular_momentum, &w.force,
                           &w.moment, &w.applied_force, &w.applied_moment})
       add(h, *v);

@@ -41,7 +41,8 @@ struct Clumps {
 
 /// Motion and reaction of a wall or body; for a body the frame's origin is its centre of mass.
 struct WallState {
-  bool present = true;  // false: a body that no stage has placed yet
+  bool present = true;  // false: a body that no stage has placed yet, or a wall that was taken away
+  bool held = false;    // a body that keeps its velocity whatever acts on it, as walls do
   Pose pose;
   Vec3 velocity = Vec3::Zero();          // [m/s]
   Vec3 angular_velocity = Vec3::Zero();  // about the frame's origin [rad/s]

@@ -27,6 +27,17 @@ const StoneSet& Simulation::stone_set(std::string_view name) const {
   return *found;
 }
 
+void Simulation::drive(std::size_t wall, const Vec3& velocity) {
+  WallState& w = state.walls[wall];
+  const auto& body = model.walls[wall].body;
+  for (int a = 0; a < 3; ++a) {
+    if (body && !w.held && body->free_shift[static_cast<std::size_t>(a)]) continue;
+    if (body)
+      w.boundary_work += 0.5 * body->mass * (velocity[a] * velocity[a] - w.velocity[a] * w.velocity[a]);
+    w.velocity[a] = velocity[a];
+  }
+}
+
 void Simulation::stop_stones() {
   for (int c = 0; c < state.clumps.size(); ++c) set_motion(state, c, Vec3::Zero(), Vec3::Zero());
 }

@@ -45,6 +45,10 @@ struct Simulation {
   /// The set of that name, which must be there; "" is that of [stones].
   const StoneSet& stone_set(std::string_view name) const;
 
+  /// Gives a wall or a held body this velocity [m/s], any other body its parts along the blocked axes; the
+  /// kinetic energy that a body gains is booked as work of the boundary.
+  void drive(std::size_t wall, const Vec3& velocity);
+
   /// Takes all speed from the stones.
   void stop_stones();
 

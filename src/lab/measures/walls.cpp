@@ -1,6 +1,9 @@
 #include <array>
+#include <cmath>
 #include <string_view>
+#include <tuple>
 
+#include "dem/touching.h"
 #include "lab/measures/measures.h"
 
 namespace trackbed {
@@ -14,6 +17,38 @@ void add_vector(std::vector<Measure>& all, const std::string& name, Dimension di
   for (int a = 0; a < 3; ++a)
     all.push_back({name + "_" + std::string(axes[static_cast<std::size_t>(a)]), dimension, meaning,
                    [get, a](const Simulation& sim) { return get(sim)[a]; }});
+}
+
+/// The parts of a body that stones press on, by where the normals of their contacts point.
+enum class Face { base, sides, ends };
+
+/// The longer of a body's two horizontal axes, 0 or 1, in its own frame: that of a sleeper.
+int long_axis(const WallShape& shape) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& v : shape.mesh.vertices) box.extend(v);
+  return box.sizes().x() >= box.sizes().y() ? 0 : 1;
+}
+
+/// Which face a contact with this normal (body frame) presses on: that of the largest part of the normal.
+Face face_of(const Vec3& normal, int along) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  if (axis == 2) return Face::base;
+  return axis == along ? Face::ends : Face::sides;
+}
+
+/// Elastic force of the stones on one face of a body [N].
+Vec3 force_on_face(const Simulation& sim, std::size_t wall, Face face) {
+  const int along = long_axis(sim.model.walls[wall].shape);
+  const Quat back = sim.state.walls[wall].pose.orientation.conjugate();
+  Vec3 force = Vec3::Zero();
+  for (const WallBlock& block : sim.state.wall_blocks)
+    for (const WallPair& pair : block.pairs)
+      if (pair.wall == static_cast<int>(wall))
+        visit_pair(sim.model, sim.state, block, pair, [&](const Touching& t) {
+          if (face_of(back * t.normal, along) == face) force += t.force();
+        });
+  return force;
 }
 
 }  // namespace
@@ -33,6 +68,13 @@ std::vector<Measure> wall_measures(const Wall& wall, std::size_t index) {
              });
   add_vector(all, name + ".velocity", Dimension::velocity, "of " + name + ", half a step ago",
              [state](const Simulation& sim) { return state(sim).velocity; });
+  if (wall.body)
+    for (const auto& [face, part, where] : {std::tuple(Face::base, "base", "its underside and top"),
+                                            {Face::sides, "sides", "its long sides"},
+                                            {Face::ends, "ends", "its ends"}})
+      add_vector(all, name + ".force_" + part, Dimension::force,
+                 "of the stones on " + name + " whose contacts face " + where,
+                 [index, face = face](const Simulation& sim) { return force_on_face(sim, index, face); });
   if (wall.body)
     add_vector(all, name + ".applied_force", Dimension::force,
                "on " + name + ", apart from stones and gravity",

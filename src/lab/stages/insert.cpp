@@ -17,6 +17,7 @@ struct InsertInput : StageInput {
   std::optional<double> bottom;  // [m]
   std::vector<double> at;        // [m]
   double clearance = 0;          // [m]
+  bool held = false;
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
     check_body(document, sim, here + ".body", body);
   }
@@ -33,6 +34,7 @@ void declare(Fields& f, InsertInput& in) {
   f.quantities("at", in.at, Dimension::length, {}, "x and y of its centre; by default the container's");
   f.quantity("clearance", in.clearance, Dimension::length, {.at_least = 0},
              "stones nearer than this are removed");
+  f.flag("held", in.held, "it stays where it is, whatever acts on it, until the stage release");
   f.check(!in.bottom || in.embedment == 0, "bottom", "bottom and embedment say the same thing twice",
           "give one of them");
   f.check(in.at.empty() || in.at.size() == 2, "at", "two lengths are needed", "give x and y");
@@ -61,6 +63,7 @@ class Insert : public Stage {
     bottom_ = in_.bottom ? *in_.bottom : surface_ - in_.embedment;
     wall.pose.position.z() = bottom_ - box.min().z();
     wall.present = true;
+    wall.held = in_.held;
     wall.velocity = wall.angular_velocity = wall.angular_momentum = Vec3::Zero();
     sim.wall_reference[b] = wall.pose;
     sim.model.limits.domain.extend(wall.pose.position + box.max());

@@ -1,5 +1,9 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "lab/checks.h"
 #include "lab/stages/table.h"
@@ -13,62 +17,99 @@ struct MoveInput : StageInput {
   std::optional<double> distance;  // [m]
   std::optional<double> duration;  // [s]
   std::optional<double> force;     // [N]
-  void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
-    check_wall(document, sim, here + ".wall", wall);
-  }
+  std::vector<double> probes;      // [m]
+  void check(const Document& document, const CaseInput&, const Simulation& sim) const override;
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
 void declare(Fields& f, MoveInput& in) {
   declare_common(f, in);
-  f.text(required("wall"), in.wall, "wall that moves");
+  f.text(required("wall"), in.wall, "wall that moves, or body, along axes in which it is not free");
   f.vector(required("velocity"), in.velocity, Dimension::velocity, {}, "its velocity");
   f.quantity("distance", in.distance, Dimension::length, {.above = 0}, "stop when it has gone this far");
   f.quantity("duration", in.duration, Dimension::time, {.above = 0}, "stop after this time");
   f.quantity("force", in.force, Dimension::force, {.above = 0},
              "stop when the stones push against the motion with this force");
+  f.quantities("probes", in.probes, Dimension::length, {.above = 0},
+               "distances at which the force against the motion is reported");
+  f.check(std::is_sorted(in.probes.begin(), in.probes.end()), "probes", "the distances do not ascend",
+          "sort them");
   f.check(in.velocity.norm() > 0, "velocity", "the velocity is zero",
           "give a velocity, or use the stage hold");
   f.check(in.distance || in.duration || in.force, "duration", "nothing says when the motion ends",
           "give distance, duration or force");
 }
 
+void MoveInput::check(const Document& document, const CaseInput&, const Simulation& sim) const {
+  const int number = sim.find_wall(wall);
+  const bool is_body = number >= 0 && sim.model.walls[static_cast<std::size_t>(number)].body;
+  if (!is_body) return check_wall(document, sim, here + ".wall", wall);
+  const BodyProperties& body = *sim.model.walls[static_cast<std::size_t>(number)].body;
+  for (int a = 0; a < 3; ++a)
+    if (velocity[a] != 0 && body.free_shift[static_cast<std::size_t>(a)])
+      document.fail(here + ".velocity", fmt::format("{} is free to move along {}", wall, "xyz"[a]),
+                    "leave that axis out of its `free`: a body is either driven along an axis or free");
+}
+
 class Move : public Stage {
  public:
-  explicit Move(const MoveInput& in) : in_(in) {}
+  explicit Move(const MoveInput& in) : in_(in), direction_(in.velocity.normalized()) {}
 
   void open(Simulation& sim) override {
     wall_ = static_cast<std::size_t>(sim.find_wall(in_.wall));
     start_ = sim.state.time;
     from_ = sim.state.walls[wall_].pose.position;
   }
-  void control(Simulation& sim) override { sim.state.walls[wall_].velocity = in_.velocity; }
+  void control(Simulation& sim) override {
+    look(sim);
+    sim.drive(wall_, in_.velocity);
+  }
   bool finished(const Simulation& sim) override {
-    const WallState& wall = sim.state.walls[wall_];
-    if (in_.distance && (wall.pose.position - from_).norm() >= *in_.distance) return true;
+    if (in_.distance && distance(sim) >= *in_.distance) return true;
     if (in_.duration && sim.state.time - start_ >= *in_.duration) return true;
-    return in_.force && -wall.force.dot(in_.velocity.normalized()) >= *in_.force;
+    return in_.force && resistance(sim) >= *in_.force;
   }
   std::vector<Result> close(Simulation& sim) override {
-    WallState& wall = sim.state.walls[wall_];
-    wall.velocity = Vec3::Zero();
-    return {{"distance", (wall.pose.position - from_).norm(), Dimension::length},
-            {"force", -wall.force.dot(in_.velocity.normalized()), Dimension::force}};
+    look(sim);
+    sim.drive(wall_, Vec3::Zero());
+    std::vector<Result> results{{"distance", distance(sim), Dimension::length},
+                                {"force", resistance(sim), Dimension::force},
+                                {"force_peak", peak_, Dimension::force},
+                                {"distance_at_peak", peak_at_, Dimension::length}};
+    for (std::size_t k = 0; k < probed_.size(); ++k)
+      results.push_back({fmt::format("force_at_{:g}_mm", 1e3 * in_.probes[k]), probed_[k], Dimension::force});
+    return results;
   }
   double remaining(const Simulation& sim) const override {
     double left = 0;
     if (in_.duration) left = start_ + *in_.duration - sim.state.time;
-    if (in_.distance)
-      left = std::max(left, (*in_.distance - (sim.state.walls[wall_].pose.position - from_).norm()) /
-                                in_.velocity.norm());
+    if (in_.distance) left = std::max(left, (*in_.distance - distance(sim)) / in_.velocity.norm());
     return left;
   }
 
  private:
+  double distance(const Simulation& sim) const {
+    return direction_.dot(sim.state.walls[wall_].pose.position - from_);
+  }
+  /// Force of the stones against the motion [N].
+  double resistance(const Simulation& sim) const { return -sim.state.walls[wall_].force.dot(direction_); }
+
+  void look(const Simulation& sim) {
+    const double force = resistance(sim), gone = distance(sim);
+    if (force > peak_) {
+      peak_ = force;
+      peak_at_ = gone;
+    }
+    while (probed_.size() < in_.probes.size() && gone >= in_.probes[probed_.size()]) probed_.push_back(force);
+  }
+
   MoveInput in_;
+  Vec3 direction_;
   std::size_t wall_ = 0;
   double start_ = 0;
   Vec3 from_ = Vec3::Zero();
+  double peak_ = 0, peak_at_ = 0;  // [N], [m]
+  std::vector<double> probed_;     // [N]
 };
 
 std::unique_ptr<Stage> MoveInput::make(const CaseInput&) const {
@@ -78,7 +119,7 @@ std::unique_ptr<Stage> MoveInput::make(const CaseInput&) const {
 }  // namespace
 
 Kind<StageInput> move_stage() {
-  return kind_of<StageInput, MoveInput>("move", "moves a wall with a constant velocity");
+  return kind_of<StageInput, MoveInput>("move", "moves a wall or body with a constant velocity");
 }
 
 }  // namespace trackbed

@@ -10,7 +10,7 @@ const Kinds<StageInput>& stage_kinds() {
   static const Kinds<StageInput> kinds{
       "stage",
       {fill_stage(), settle_stage(), insert_stage(), load_stage(), move_stage(), servo_stage(), hold_stage(),
-       scatter_stage(), replace_stage(), adjust_stage(), remove_stage()}};
+       scatter_stage(), replace_stage(), adjust_stage(), remove_stage(), release_stage()}};
   return kinds;
 }
 

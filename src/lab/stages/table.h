@@ -16,5 +16,6 @@ Kind<StageInput> scatter_stage();
 Kind<StageInput> replace_stage();
 Kind<StageInput> adjust_stage();
 Kind<StageInput> remove_stage();
+Kind<StageInput> release_stage();
 
 }  // namespace trackbed
