@@ -16,6 +16,8 @@ ContactProperties combine(const Material& a, const Material& b, LawKind law, Inh
   p.ks = inheritance == Inheritance::series ? in_series(a.ks, b.ks) : std::min(a.ks, b.ks);
   p.friction = std::min(a.friction, b.friction);
   p.rolling_friction = std::min(a.rolling_friction, b.rolling_friction);
+  // A moment that is always cut to nothing need not be worked out.
+  if (p.rolling_friction == 0) p.law = LawKind::linear;
   return p;
 }
 

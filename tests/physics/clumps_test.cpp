@@ -66,6 +66,7 @@ TEST(clumps, stable_step_of_one_ball_on_a_plane_and_in_a_lattice) {
        {std::pair{LawKind::linear, 0.8 * std::sqrt(0.1)}, {LawKind::linear_rolling, 0.8 * std::sqrt(0.08)}}) {
     scenes::Setting a;
     a.law = law;
+    a.rolling_friction = 0.1;
     Simulation lattice = scenes::make_scene(a);
     scenes::add_ball(lattice, Vec3::Zero());
     for (int axis = 0; axis < 3; ++axis)

@@ -57,5 +57,14 @@ TEST(PairTable, StiffestLooksAtNormalAndShearOfAllPartners) {
   EXPECT_DOUBLE_EQ(sheared.stiffest(0), 4e6);
 }
 
+// Clumps without rolling resistance beside balls with it.
+TEST(PairTable, RollsOnlyWhereBothPiecesResistRolling) {
+  const PairTable table({{"clump", 1e6, 1e6, 0.5, 0, 2600}, {"ball", 1e6, 1e6, 0.5, 0.3, 2600}},
+                        LawKind::linear_rolling, {});
+  EXPECT_EQ(table(0, 0).law, LawKind::linear);
+  EXPECT_EQ(table(0, 1).law, LawKind::linear);
+  EXPECT_EQ(table(1, 1).law, LawKind::linear_rolling);
+}
+
 }  // namespace
 }  // namespace trackbed

@@ -80,6 +80,7 @@ TEST(StableStep, RollingSpringsCount) {
   constexpr int middle = 13;
   Setting a;
   a.law = LawKind::linear_rolling;
+  a.rolling_friction = 0.1;
   Simulation sim = cubic_lattice(a);
   const double lever = a.radius - 0.5e-6, effective = a.radius / 2;
   sim.changed();
