@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -26,7 +27,23 @@ Overlaps overlaps_of_stones(const Simulation& sim) {
   return all;
 }
 
-void Parting::open(Simulation& sim) {
+namespace {
+
+/// Scales the stiffness between stones whose materials no wall has.
+void soften(const Simulation& sim, double share, PairTable& pairs) {
+  std::vector<bool> is_of_wall(sim.model.materials.size());
+  for (const Wall& wall : sim.model.walls) is_of_wall[static_cast<std::size_t>(wall.material)] = true;
+  for (int a = 0; a < pairs.size(); ++a)
+    for (int b = 0; b < pairs.size(); ++b) {
+      if (is_of_wall[static_cast<std::size_t>(a)] || is_of_wall[static_cast<std::size_t>(b)]) continue;
+      pairs(a, b).kn *= share;
+      pairs(a, b).ks *= share;
+    }
+}
+
+}  // namespace
+
+void Parting::open(Simulation& sim, double share_of_stiffness) {
   start_ = sim.state.time;
   gravity_ = sim.model.gravity;
   damping_ = sim.model.local_damping;
@@ -39,6 +56,7 @@ void Parting::open(Simulation& sim) {
   sim.model.local_damping = 0.7;
   sim.model.limits.overlap = sim.model.limits.speed = std::numeric_limits<double>::infinity();
   sim.model.pairs = pairs_.with_friction_up_to(0);
+  soften(sim, share_of_stiffness, sim.model.pairs);
   sim.changed();
 }
 

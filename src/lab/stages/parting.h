@@ -15,7 +15,9 @@ Overlaps overlaps_of_stones(const Simulation& sim);
 /// in a step that none is thrown.
 class Parting {
  public:
-  void open(Simulation& sim);
+  /// Stones of materials that no wall is made of meet each other with this share of their stiffness: they
+  /// give way to each other rather than press each other through a wall of triangles.
+  void open(Simulation& sim, double share_of_stiffness = 1);
 
   /// No point of a stone moves in a step by more than a hundredth of the smallest stone's radius, and from
   /// time to time all stand still: overlaps of any size come apart by small steps.

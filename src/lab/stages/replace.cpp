@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "base/rng.h"
+#include "dem/overlap.h"
 #include "lab/case.h"
 #include "lab/checks.h"
+#include "lab/room.h"
 #include "lab/stages/parting.h"
 #include "lab/stages/table.h"
 
@@ -52,12 +55,15 @@ class Replace : public Stage {
       const int shape = set.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set.count)));
       const auto volume = [&](int t) { return sim.model.templates[static_cast<std::size_t>(t)].volume; };
       stones.push_back({clump, shape, c.scale[k] * std::cbrt(volume(c.shape[k]) / volume(shape)),
-                        set.material, rng.rotation()});
+                        set.material, Quat::Identity()});
+      if (find_orientation(sim, stones.back(), rng)) continue;
+      stones.pop_back();
+      ++left_;
     }
     reshape(sim.model, sim.state, stones);
     sim.stop_stones();
     replaced_ = static_cast<int>(stones.size());
-    parting_.open(sim);
+    parting_.open(sim, 0.1);
   }
 
   void control(Simulation& sim) override { parting_.control(sim); }
@@ -69,6 +75,7 @@ class Replace : public Stage {
     parting_.close(sim);
     const double all = std::max(1, sim.state.clumps.size());
     return {{"replaced", static_cast<double>(replaced_), Dimension::none},
+            {"left", static_cast<double>(left_), Dimension::none},
             {"share", replaced_ / all, Dimension::none},
             {"time", parting_.time(sim), Dimension::time},
             {"mean_overlap", parting_.overlaps().mean, Dimension::none},
@@ -76,9 +83,40 @@ class Replace : public Stage {
   }
 
  private:
+  /// Any orientation; beside walls one in which the stone keeps clear of all of them, or at least of those of
+  /// triangles, if one of many tries does. A corner behind triangles would be pushed out on the other side,
+  /// planes push it back. Returns whether there is such an orientation.
+  static bool find_orientation(Simulation& sim, Reshaped& stone, Rng& rng) {
+    constexpr int most_tries = 200;
+    Clumps& c = sim.state.clumps;
+    const auto k = static_cast<std::size_t>(stone.clump);
+    const auto before = std::tuple(c.shape[k], c.scale[k], c.orientation[k]);
+    c.shape[k] = stone.shape;
+    c.scale[k] = stone.scale;
+    bool is_clear = false, is_possible = false;
+    for (int tries = 0; tries < most_tries && !is_clear; ++tries) {
+      c.orientation[k] = rng.rotation();
+      is_clear = is_clear_of_walls(sim, stone.clump, 0);
+      if (!is_clear && (is_possible || meets_triangles(sim, stone.clump))) continue;
+      is_possible = true;
+      stone.orientation = c.orientation[k];
+    }
+    std::tie(c.shape[k], c.scale[k], c.orientation[k]) = before;
+    return is_possible;
+  }
+
+  static bool meets_triangles(const Simulation& sim, int stone) {
+    for (std::size_t w = 0; w < sim.model.walls.size(); ++w)
+      if (sim.state.walls[w].present && !sim.model.walls[w].shape.is_plane &&
+          stone_meets_wall(sim.model, sim.state, stone, static_cast<int>(w), 0))
+        return true;
+    return false;
+  }
+
   ReplaceInput in_;
   Parting parting_;
   int replaced_ = 0;
+  int left_ = 0;  // that have no room to be replaced beside a wall
 };
 
 std::unique_ptr<Stage> ReplaceInput::make(const CaseInput&) const {
