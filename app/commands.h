@@ -4,6 +4,7 @@
 namespace trackbed {
 
 int run_command(int argc, char** argv);
+int apss_command(int argc, char** argv);
 int check_command(int argc, char** argv);
 int describe_command(int argc, char** argv);
 int bench_command(int argc, char** argv);
