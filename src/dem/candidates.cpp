@@ -145,7 +145,7 @@ void find_candidates(const TwoStones& two, const Skin& skin, const Relative& now
   if (near.search.range < skin.inner + motion_since(near.search, now, reach)) {
     walk_trees(two, skin.outer, s);
     near.pairs.assign(s.found.begin(), s.found.end());
-    near.search = {now.offset, now.turn, skin.outer};
+    near.search = {now.turn, now.offset, skin.outer};
   }
   prune(two, skin.inner, near.pairs, s);
 }
@@ -180,7 +180,7 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
   }
   // Stones that are far apart touch no sooner than when they have come nearer by that much.
   const double range = std::max(apart, skin.inner);
-  search = {now.offset, now.turn, range};
+  search = {now.turn, now.offset, range};
   due.geometry.due[due.pair] = travel + range;
   return has_list;
 }

@@ -160,7 +160,7 @@ void refresh(const Model& model, const State& state, const Workspace& work, Wall
     p.first = first;
     p.count = static_cast<int>(lists.keys.size()) - first;
     const Relative seen = stone_seen_from_wall(state, p);
-    geometry.search[k] = {seen.offset, seen.turn, skin.outer};
+    geometry.search[k] = {seen.turn, seen.offset, skin.outer};
     choose_tested(work, p, k, 0.0, skin.inner, geometry);
   }
   block.keys = lists.keys;

@@ -14,10 +14,11 @@ namespace trackbed {
 
 /// Where the bodies of a pair were when its candidates were last looked for.
 struct PairSearch {
-  Vec3 offset = Vec3::Zero();    // of body 2 in the frame of body 1, then
   Quat turn = Quat::Identity();  // of body 2 relative to body 1, then
+  Vec3 offset = Vec3::Zero();    // of body 2 in the frame of body 1, then
   double range = -1;             // motion since then that the list allows; negative: there is none yet [m]
 };
+static_assert(sizeof(PairSearch) == 64);  // a large bed has millions
 
 /// Pebble pairs among which the candidates of a pair are, while the motion of its bodies and the skin of
 /// the candidates together are less than the range.
