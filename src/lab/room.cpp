@@ -48,9 +48,10 @@ Vec3 point_in_room(const Simulation& sim, Rng& rng) {
   }
 }
 
-bool is_clear_of_walls(const Simulation& sim, int stone, double clearance) {
+bool is_clear_of_walls(const Simulation& sim, int stone, double clearance, Walls which) {
   for (Index w = 0; w < sim.state.walls.size(); ++w) {
     if (!sim.state.walls[w].present) continue;
+    if (which == Walls::of_triangles && sim.model.walls[w].shape.is_plane) continue;
     if (stone_meets_wall(sim.model, sim.state, stone, static_cast<int>(w), clearance)) return false;
   }
   return true;

@@ -20,7 +20,9 @@ double room_volume(const Simulation& sim);
 /// Evenly spread over the room.
 Vec3 point_in_room(const Simulation& sim, Rng& rng);
 
-/// Whether a stone keeps clear [m] of all walls, on their right side.
-bool is_clear_of_walls(const Simulation& sim, int stone, double clearance);
+enum class Walls { all, of_triangles };
+
+/// Whether a stone keeps clear [m] of the walls, of planes on their right side.
+bool is_clear_of_walls(const Simulation& sim, int stone, double clearance, Walls which = Walls::all);
 
 }  // namespace trackbed

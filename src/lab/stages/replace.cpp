@@ -3,7 +3,6 @@
 #include <tuple>
 
 #include "base/rng.h"
-#include "dem/overlap.h"
 #include "lab/case.h"
 #include "lab/checks.h"
 #include "lab/room.h"
@@ -97,20 +96,13 @@ class Replace : public Stage {
     for (int tries = 0; tries < most_tries && !is_clear; ++tries) {
       c.orientation[k] = rng.rotation();
       is_clear = is_clear_of_walls(sim, stone.clump, 0);
-      if (!is_clear && (is_possible || meets_triangles(sim, stone.clump))) continue;
+      if (!is_clear && (is_possible || !is_clear_of_walls(sim, stone.clump, 0, Walls::of_triangles)))
+        continue;
       is_possible = true;
       stone.orientation = c.orientation[k];
     }
     std::tie(c.shape[k], c.scale[k], c.orientation[k]) = before;
     return is_possible;
-  }
-
-  static bool meets_triangles(const Simulation& sim, int stone) {
-    for (std::size_t w = 0; w < sim.model.walls.size(); ++w)
-      if (sim.state.walls[w].present && !sim.model.walls[w].shape.is_plane &&
-          stone_meets_wall(sim.model, sim.state, stone, static_cast<int>(w), 0))
-        return true;
-    return false;
   }
 
   ReplaceInput in_;
