@@ -106,7 +106,7 @@ void put_bytes(std::string& bytes, const Vec3& v) {
 
 }  // namespace
 
-TriangleMesh read_mesh(const std::filesystem::path& path) {
+TriangleMesh read_mesh(const std::filesystem::path& path, double unit) {
   const std::string ending = lower_ending(path);
   TriangleMesh (*reader)(formats::MeshFile) = ending == ".stl"   ? formats::read_stl
                                               : ending == ".obj" ? formats::read_obj
@@ -117,6 +117,7 @@ TriangleMesh read_mesh(const std::filesystem::path& path) {
                                  path.string(), ending));
   TriangleMesh mesh = reader({path, read_all(path)});
   if (mesh.facets.empty()) throw InputError(path.string() + ": the file holds no facets");
+  for (Vec3& v : mesh.vertices) v *= unit;
   return mesh;
 }
 

@@ -55,8 +55,7 @@ struct MeshRegion : RegionInput {
   double unit = 1;  // [m]
 
   Region make() const override {
-    TriangleMesh mesh = read_mesh(file);
-    for (Vec3& v : mesh.vertices) v *= unit;
+    const TriangleMesh mesh = read_mesh(file, unit);
     const auto shape = std::make_shared<const WallShape>(
         make_mesh_wall("region", make_solid(mesh, file.filename().string()).mesh));
     return [shape](const Vec3& x) { return is_inside(*shape, x); };

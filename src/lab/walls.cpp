@@ -71,8 +71,7 @@ struct MeshWallInput : WallInput {
   Vec3 at = Vec3::Zero();
 
   void build(const std::string& name, int material_index, Simulation& sim) const override {
-    TriangleMesh mesh = read_mesh(file);
-    for (Vec3& v : mesh.vertices) v *= unit;
+    const TriangleMesh mesh = read_mesh(file, unit);
     add_wall(sim, {make_mesh_wall(name, mesh), material_index, {}}, {at, Quat::Identity()});
   }
 };
@@ -109,8 +108,7 @@ struct MeshBodyInput : BodyInput {
   double unit = 1;
 
   TriangleMesh shape() const override {
-    TriangleMesh mesh = read_mesh(file);
-    for (Vec3& v : mesh.vertices) v *= unit;
+    const TriangleMesh mesh = read_mesh(file, unit);
     return make_solid(mesh, file.filename().string()).mesh;
   }
 };
