@@ -220,8 +220,8 @@ void refresh(const Model& model, const State& state, const Workspace& work, Pair
     if (travel > geometry.due[k]) is_new |= search_pair(model, state, work, {block, geometry, k});
     least = std::min(least, geometry.due[k] - travel);
   }
-  // Two stones use up what is left the sooner the farther the fastest of all stones goes.
-  geometry.quiet_until = work.way + 0.5 * least;
+  // Both stones of a pair use up what is left.
+  geometry.watch.quiet_until = geometry.watch.way + 0.5 * least;
   if (is_new) list_candidates(model, state, work, block, geometry);
 }
 

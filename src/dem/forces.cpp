@@ -185,7 +185,7 @@ void prefetch(const PairBlock& block, const PairGeometry& geometry) {
 [[gnu::flatten]] int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
   PairBlock& block = state.pair_blocks[b];
   PairGeometry& geometry = work.pair_geometry[b];
-  if (work.way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
+  if (geometry.watch.step(work.group_way)) refresh(model, state, work, block, geometry);
   int touching = 0;
   const Index n = geometry.candidates.size();
   for (Index first = 0; first < n; first += Lanes::size) {

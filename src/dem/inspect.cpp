@@ -39,13 +39,13 @@ Vec3 half_kicked(const Vec3& rate, const Vec3& unbalanced, const Vec3& inertia, 
 double kinetic_energy(const Model& model, const State& state, Index i, double& lost) {
   const Clumps& c = state.clumps;
   const double half = 0.5 * state.dt;
-  const Vec3 v = half_kicked(c.velocity[i], c.force[i] + c.mass[i] * model.gravity, Vec3::Constant(c.mass[i]),
-                             model.local_damping, half, lost);
+  const Vec3 v = half_kicked(c.velocity[i], c.force[i] + c.mass[i] * model.gravity,
+                             Vec3::Constant(c.inertial_mass[i]), model.local_damping, half, lost);
   const Mat3 r = damping_axes(c.orientation[i], c.inertia[i]);
   const Vec3 spin = (r.transpose() * c.angular_momentum[i]).cwiseQuotient(c.inertia[i]);
   const Vec3 w =
       half_kicked(spin, r.transpose() * c.moment[i], c.inertia[i], model.local_damping, half, lost);
-  return 0.5 * (c.mass[i] * v.squaredNorm() + c.inertia[i].dot(w.cwiseAbs2()));
+  return 0.5 * (c.inertial_mass[i] * v.squaredNorm() + c.inertia[i].dot(w.cwiseAbs2()));
 }
 
 double kinetic_energy(const Model& model, const BodyProperties& body, const WallState& wall, double dt,

@@ -35,6 +35,7 @@ struct TimeStepRule {
   double largest_growth = 1.05;  // per step
   double largest_travel = 0.02;  // of the smallest pebble's radius, per step: no contact is jumped into
   std::optional<double> fixed;   // user's choice [s]; refused when above the stable one
+  double scaled_share = 0;       // of the stones get more inertia for a longer step; 0: none
   int shortest_interval = 20;    // steps between two looks
   int longest_interval = 100;    // in a bed at rest
 };

@@ -98,14 +98,14 @@ void turn_evenly(Turning<Real>& t, const Vec3Of<Real>& moment, const Vec3Of<Real
 struct Movers {
   Vec3Of<Lanes> inertia, position, velocity, force, moment;
   Turning<Lanes> turning;
-  Lanes mass, bound, travel;
+  Lanes mass, inertial_mass, bound, travel;
 };
 
 /// One step of several stones; returns the lengths of way of their farthest points [m].
 Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
   const double alpha = model.local_damping;
   const Vec3Of<Lanes> gravity(model.gravity.x(), model.gravity.y(), model.gravity.z());
-  const Vec3Of<Lanes> mobility = Vec3Of<Lanes>::Constant(Lanes(1.0) / m.mass);
+  const Vec3Of<Lanes> mobility = Vec3Of<Lanes>::Constant(Lanes(1.0) / m.inertial_mass);
   m.turning.damping_loss += kick<Lanes>(m.force + m.mass * gravity, mobility, alpha, kick_time, m.velocity);
   m.position += Lanes(dt) * m.velocity;
 
@@ -166,6 +166,7 @@ struct Batch {
   m.force = q.load(c.force);
   m.moment = q.load(c.moment);
   m.mass = q.load(c.mass);
+  m.inertial_mass = q.load(c.inertial_mass);
   m.bound = q.load(work.bound);
   m.travel = q.load(work.travel);
   Rows orientations;  // x, y, z, w as Eigen stores them
@@ -263,11 +264,16 @@ void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
   double way = 0;
   const Index n = state.clumps.id.size();
-  const int batches = static_cast<int>((n + Lanes::size - 1) / Lanes::size);
-#pragma omp parallel for schedule(static) reduction(max : way) if (batches > 16)
-  for (int k = 0; k < batches; ++k)
-    way = std::max(
-        way, move_batch(model, state, work, Batch(static_cast<Index>(k) * Lanes::size, n), kick_time, dt));
+  const int groups = static_cast<int>(work.group_way.size());
+#pragma omp parallel for schedule(static) reduction(max : way) if (groups > 8)
+  for (int g = 0; g < groups; ++g) {
+    const Index first = static_cast<Index>(g) * Watch::group, end = std::min(first + Watch::group, n);
+    double longest = 0;
+    for (Index k = first; k < end; k += Lanes::size)
+      longest = std::max(longest, move_batch(model, state, work, Batch(k, n), kick_time, dt));
+    work.group_way[static_cast<Index>(g)] = longest;
+    way = std::max(way, longest);
+  }
   work.way += way;
 }
 
@@ -294,6 +300,7 @@ void move_walls(const Model& model, State& state, Workspace& work, double dt) {
     work.wall_travel[w] += way;
     longest = std::max(longest, way);
   }
+  work.wall_step_way = longest;
   work.wall_way += longest;
 }
 

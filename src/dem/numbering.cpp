@@ -42,7 +42,7 @@ void reorder(std::vector<T>& values, const std::vector<Index>& order) {
 
 void reorder(Clumps& c, const std::vector<Index>& order) {
   for (auto* numbers : {&c.id, &c.shape, &c.material}) reorder(*numbers, order);
-  for (auto* numbers : {&c.scale, &c.mass}) reorder(*numbers, order);
+  for (auto* numbers : {&c.scale, &c.mass, &c.inertial_mass}) reorder(*numbers, order);
   for (auto* vectors :
        {&c.inertia, &c.position, &c.velocity, &c.angular_momentum, &c.angular_velocity, &c.force, &c.moment})
     reorder(*vectors, order);

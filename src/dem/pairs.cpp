@@ -237,6 +237,8 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
       geometry.emplace_back();
     }
     blocks.back().pairs.push_back({i, j, static_cast<int>(blocks.back().keys.size()), 0});
+    geometry.back().watch.add(i);
+    geometry.back().watch.add(j);
     geometry.back().search.emplace_back();
     geometry.back().due.push_back(-1);
     const auto found = old_pairs.find({i, j});
@@ -288,6 +290,7 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
     work.wall_geometry[b].tested.resize(state.wall_blocks[b].pairs.size(), 0.0);
     work.wall_geometry[b].due.resize(state.wall_blocks[b].pairs.size(), -1);
     work.wall_geometry[b].candidates.resize(state.wall_blocks[b].keys.size());
+    for (const WallPair& p : state.wall_blocks[b].pairs) work.wall_geometry[b].watch.add(p.clump);
   }
 
   const Index n = static_cast<Index>(state.clumps.size());
@@ -341,6 +344,7 @@ void prepare(const Model& model, const State& state, Workspace& work) {
   work.motion.resize(n);
   work.bound.resize(n);
   work.travel.resize(n, 0.0);
+  work.group_way.assign((n + Watch::group - 1) / Watch::group, 0.0);
   for (Index c = 0; c < n; ++c) {
     const Index shape = static_cast<Index>(state.clumps.shape[c]);
     work.motion[c] = motion_of(state.clumps, c);

@@ -42,6 +42,7 @@ int add_clump(const Model& model, State& state, int shape, double scale, int mat
   c.material.push_back(material);
   c.scale.push_back(scale);
   c.mass.push_back(density * t.volume * scale * scale * scale);
+  c.inertial_mass.push_back(c.mass.back());
   c.inertia.push_back(density * std::pow(scale, 5) * t.inertia);
   c.position.push_back(pose.position);
   c.orientation.push_back(pose.orientation);
@@ -62,14 +63,17 @@ void set_motion(State& state, int clump, const Vec3& velocity, const Vec3& angul
 
 namespace {
 
-/// Mass and inertia as shape, size and material have it; the speeds stay.
+/// Mass and inertia as shape, size and material have it; the speeds stay, and the share by which inertia is
+/// scaled.
 void weigh(const Model& model, State& state, int clump) {
   const Index i = static_cast<Index>(clump);
   Clumps& c = state.clumps;
   const ClumpTemplate& t = model.templates[static_cast<Index>(c.shape[i])];
   const double density = model.materials[static_cast<Index>(c.material[i])].density;
+  const double scaled = c.mass[i] > 0 ? c.inertial_mass[i] / c.mass[i] : 1.0;
   c.mass[i] = density * t.volume * std::pow(c.scale[i], 3);
-  c.inertia[i] = density * std::pow(c.scale[i], 5) * t.inertia;
+  c.inertial_mass[i] = scaled * c.mass[i];
+  c.inertia[i] = scaled * density * std::pow(c.scale[i], 5) * t.inertia;
   set_motion(state, clump, c.velocity[i], c.angular_velocity[i]);
 }
 
@@ -83,6 +87,27 @@ void forget_pairs(std::vector<Block>& blocks, const IsGone& is_gone) {
 
 void rescale(const Model& model, State& state, int clump, double factor) {
   state.clumps.scale[static_cast<Index>(clump)] *= factor;
+  weigh(model, state, clump);
+}
+
+void scale_inertia(State& state, int clump, double factor) {
+  const Index i = static_cast<Index>(clump);
+  Clumps& c = state.clumps;
+  const auto kinetic = [&] {
+    return 0.5 * (c.inertial_mass[i] * c.velocity[i].squaredNorm() +
+                  c.angular_velocity[i].dot(c.angular_momentum[i]));
+  };
+  const double before = kinetic(), slower = std::min(1.0, 1.0 / factor);
+  c.inertial_mass[i] *= factor;
+  c.inertia[i] *= factor;
+  set_motion(state, clump, slower * c.velocity[i], slower * c.angular_velocity[i]);
+  c.losses[i].damping += before - kinetic();
+}
+
+void unscale_inertia(const Model& model, State& state, int clump) {
+  const Index i = static_cast<Index>(clump);
+  scale_inertia(state, clump, state.clumps.mass[i] / state.clumps.inertial_mass[i]);
+  state.clumps.inertial_mass[i] = state.clumps.mass[i];
   weigh(model, state, clump);
 }
 
@@ -129,6 +154,7 @@ void remove_clumps(State& state, const std::vector<int>& clumps) {
   erase_at(c.material, gone);
   erase_at(c.scale, gone);
   erase_at(c.mass, gone);
+  erase_at(c.inertial_mass, gone);
   erase_at(c.inertia, gone);
   erase_at(c.position, gone);
   erase_at(c.orientation, gone);
@@ -150,6 +176,7 @@ std::uint64_t hash(const State& state) {
     h.add(c.material[i]);
     h.add(c.scale[i]);
     h.add(c.mass[i]);
+    h.add(c.inertial_mass[i]);
     for (const Vec3* v :
          {&c.inertia[i], &c.position[i], &c.velocity[i], &c.angular_momentum[i], &c.force[i], &c.moment[i]})
       add(h, *v);

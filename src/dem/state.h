@@ -25,8 +25,9 @@ struct Clumps {
   std::vector<int> shape;  // index into Model::templates
   std::vector<int> material;
   std::vector<double> scale;           // on the template's lengths
-  std::vector<double> mass;            // [kg]
-  std::vector<Vec3> inertia;           // principal [kg m^2]
+  std::vector<double> mass;            // that weighs [kg]
+  std::vector<double> inertial_mass;   // that resists: the same, but where the time step is scaled [kg]
+  std::vector<Vec3> inertia;           // principal, of the inertial mass [kg m^2]
   std::vector<Vec3> position;          // centre of mass [m]
   std::vector<Quat> orientation;       // principal axes to world
   std::vector<Vec3> velocity;          // [m/s]
@@ -128,6 +129,13 @@ struct Reshaped {
 /// Gives stones another shape, size, material and orientation about the same centre, and the motion they had.
 /// The memory of their contacts is let go of.
 void reshape(const Model& model, State& state, const std::vector<Reshaped>& stones);
+
+/// Multiplies what resists the motion of a stone, but not its weight, by `factor`. It keeps its momentum when
+/// that grows, its speed when it falls, and what kinetic energy this takes is booked as damped.
+void scale_inertia(State& state, int clump, double factor);
+
+/// Gives a stone the inertia of its mass again, to the last bit.
+void unscale_inertia(const Model& model, State& state, int clump);
 
 /// Removes stones (indices ascending) and the memory of their contacts; the others keep their order.
 void remove_clumps(State& state, const std::vector<int>& clumps);

@@ -69,8 +69,8 @@ void floor_stiffness(const PairTable& pairs, int material, double reach, double 
 
 double limit_of_clump(const Model& model, const State& state, const Workspace& work, Index c) {
   DiagonalStiffness k = stiffness_of(model, state, work, static_cast<int>(c));
-  floor_stiffness(model.pairs, state.clumps.material[c], work.bound[c], state.clumps.mass[c], k);
-  return shortest(k, state.clumps.mass[c], state.clumps.inertia[c]);
+  floor_stiffness(model.pairs, state.clumps.material[c], work.bound[c], state.clumps.inertial_mass[c], k);
+  return shortest(k, state.clumps.inertial_mass[c], state.clumps.inertia[c]);
 }
 
 double limit_of_body(const Model& model, const State& state, const Workspace& work, Index w) {
@@ -97,7 +97,8 @@ Pace pace_of(const Model& model, const State& state, const Workspace& work) {
     pace.length =
         std::min(pace.length, c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius);
     const double v = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
-    pace.acceleration = std::max(pace.acceleration, (c.force[i] / c.mass[i] + model.gravity).norm());
+    pace.acceleration = std::max(pace.acceleration, (c.force[i] / c.mass[i] + model.gravity).norm() *
+                                                        (c.mass[i] / c.inertial_mass[i]));
     if (v > pace.speed || std::isnan(v)) {
       pace.speed = v;
       pace.clump = static_cast<int>(i);
@@ -198,6 +199,29 @@ StableStep stable_step(const Model& model, const State& state, const Workspace& 
   if (kinematic.dt < step.dt) step = kinematic;
   step.steps = steps_for(model.time_step, pace, step.dt);
   return step;
+}
+
+void scale_step(const Model& model, State& state, const Workspace& work) {
+  Clumps& c = state.clumps;
+  if (c.id.empty()) return;
+  std::vector<double> own(c.id.size());  // limits of the stones' true masses [s]
+#pragma omp parallel for schedule(static) if (c.size() > 64)
+  for (int i = 0; i < c.size(); ++i) {
+    const Index k = static_cast<Index>(i);
+    own[k] = limit_of_clump(model, state, work, k) * std::sqrt(c.mass[k] / c.inertial_mass[k]);
+  }
+  std::vector<double> sorted = own;
+  const auto common = sorted.begin() + static_cast<std::ptrdiff_t>(model.time_step.scaled_share *
+                                                                   static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), common, sorted.end());
+  constexpr double most =
+      2;  // a contact that opens and closes must not make a stone heavy and light by turns
+  for (Index k = 0; k < own.size(); ++k) {
+    const double now = c.inertial_mass[k] / c.mass[k];
+    const double wanted =
+        model.time_step.scaled_share > 0 ? std::max(1.0, std::pow(*common / own[k], 2)) : 1.0;
+    if (wanted != now) scale_inertia(state, static_cast<int>(k), std::clamp(wanted / now, 1.0 / most, most));
+  }
 }
 
 StepPlan plan_steps(const Model& model, const State& state, const Workspace& work) {

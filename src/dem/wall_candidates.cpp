@@ -59,12 +59,12 @@ bool must_search(const Model& model, const State& state, const Workspace& work, 
   return must;
 }
 
-/// Leaves the block alone until the fastest stone and the fastest wall may have used up what is left.
+/// Leaves the block alone until its stones and the walls may have used up what is left.
 void rest(const Workspace& work, const WallBlock& block, WallGeometry& geometry) {
   double least = std::numeric_limits<double>::infinity();
   for (Index k = 0; k < block.pairs.size(); ++k)
     least = std::min(least, geometry.due[k] - travel_of(work, block.pairs[k]));
-  geometry.quiet_until = work.way + work.wall_way + least;
+  geometry.watch.quiet_until = geometry.watch.way + least;
 }
 
 /// New lists of a block while it is searched.

@@ -214,7 +214,7 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
   thread_local Touches s;
   WallBlock& block = state.wall_blocks[b];
   WallGeometry& geometry = work.wall_geometry[b];
-  if (work.way + work.wall_way >= geometry.quiet_until) refresh(model, state, work, block, geometry);
+  if (geometry.watch.step(work.group_way, work.wall_step_way)) refresh(model, state, work, block, geometry);
   s.clear();
   WallResult* results = &work.wall_results[b * WallBlock::capacity];
   for (Index k = 0; k < block.pairs.size(); ++k) {

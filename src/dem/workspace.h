@@ -2,6 +2,7 @@
 // results of the step in hand. An empty Workspace is always valid.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -35,6 +36,27 @@ struct Candidate {
   int properties;  // of the pair of materials, in PairTable
 };
 
+/// Tells when a block must look at its pairs: not before one of its own stones has gone far enough, whatever
+/// stones elsewhere do. Stones are watched by groups of consecutive ones, which lie near each other.
+struct Watch {
+  static constexpr std::size_t group = 16;  // stones
+  std::vector<int> groups;                  // those of the block's stones
+  double way = 0;           // none of these stones has gone farther since the pairs were made [m]
+  double quiet_until = -1;  // no pair is due before way is there [m]
+
+  void add(int stone) {
+    const int of_stone = stone / static_cast<int>(group);
+    if (std::find(groups.rbegin(), groups.rend(), of_stone) == groups.rend()) groups.push_back(of_stone);
+  }
+  /// Adds the way of the last step; whether a pair may be due.
+  bool step(const std::vector<double>& group_way, double further = 0) {
+    double longest = 0;
+    for (int k : groups) longest = std::max(longest, group_way[static_cast<std::size_t>(k)]);
+    way += longest + further;
+    return way >= quiet_until;
+  }
+};
+
 /// Beside a PairBlock.
 struct PairGeometry {
   std::vector<PairSearch> search;
@@ -43,7 +65,7 @@ struct PairGeometry {
   std::vector<Candidate> candidates;  // beside the keys
   bool is_centred = false;            // each candidate's pebbles stand in the centres of their stones
   int first_pair = 0;                 // number of its first pair, through all blocks
-  double quiet_until = -1;            // no pair is due before Workspace::way has come this far [m]
+  Watch watch;
 };
 
 /// A pebble, and the facets near it.
@@ -62,7 +84,7 @@ struct WallGeometry {
   std::vector<double> due;  // sum of clump's and wall's travel at which their motion must be measured [m]
   std::vector<WallCandidate> candidates;
   std::vector<int> facets;
-  double quiet_until = -1;  // of Workspace::way + wall_way [m]
+  Watch watch;
 };
 
 /// A stone as its contacts see it: rows of four numbers.
@@ -110,11 +132,13 @@ struct Workspace {
   std::vector<double> wall_travel;
   std::vector<double> wall_travel_at_build;
 
-  double skin = 0, margin = 0;   // [m]
-  bool pairs_are_valid = false;  // false: make all pairs anew before the next forces
-  double pairs_good_until = 0;   // no stone outside the pairs can touch before way + wall_way is there [m]
-  double way = 0;                // no stone's travel has grown by more since the start [m]
-  double wall_way = 0;           // nor has any wall's [m]
+  double skin = 0, margin = 0;    // [m]
+  bool pairs_are_valid = false;   // false: make all pairs anew before the next forces
+  double pairs_good_until = 0;    // no stone outside the pairs can touch before way + wall_way is there [m]
+  double way = 0;                 // no stone's travel has grown by more since the start [m]
+  double wall_way = 0;            // nor has any wall's [m]
+  std::vector<double> group_way;  // longest way in the last step, of each group of stones (Watch) [m]
+  double wall_step_way = 0;       // of any wall [m]
 
   std::vector<PairGeometry> pair_geometry;  // beside State::pair_blocks
   std::vector<WallGeometry> wall_geometry;  // beside State::wall_blocks

@@ -112,7 +112,14 @@ void build_set(const Document& document, const std::string& name, const ShapesIn
   if (sim.model.materials[static_cast<std::size_t>(material)].density == 0)
     document.fail("materials." + in.material, "the stones' material has no density",
                   "give density, for example \"2630 kg/m^3\"");
-  std::vector<ClumpTemplate> templates = make_templates(document, key, in, sim.seed);
+  std::vector<ClumpTemplate> templates;
+  if (in.fidelity == "stand_in") {
+    const StoneSet& stones = sim.stone_set("");
+    for (int t = stones.first; t < stones.first + stones.count; ++t)
+      templates.push_back(make_stand_in(sim.model.templates[static_cast<std::size_t>(t)]));
+  } else {
+    templates = make_templates(document, key, in, sim.seed);
+  }
   sim.stone_sets.push_back(
       {name, static_cast<int>(sim.model.templates.size()), static_cast<int>(templates.size()), material});
   std::ranges::move(templates, std::back_inserter(sim.model.templates));

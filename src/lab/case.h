@@ -26,7 +26,7 @@ struct GradingInput {
 struct ShapesInput {
   std::vector<std::filesystem::path> files;  // empty: made by the generator
   int shapes = 10;                           // made by the generator
-  std::string fidelity = "clump";            // clump | ball
+  std::string fidelity = "clump";            // clump | ball | stand_in
   double distance = 2.6;                     // [rad]
   double ratio = 0.3;
   int max_pebbles = 0;
@@ -103,10 +103,12 @@ struct RecordInput {
   double every = 1e-3;                                         // between two rows of series.csv [s]
   std::vector<std::string> measures;                           // further columns of series.csv
   std::vector<double> force_bins{100, 500, 1000, 2000, 3000};  // limits of the histogram [N]
+  std::vector<std::string> stages;                             // at whose ends is written; empty: all
   bool tables = true;                                          // contacts.csv and stones.csv at stage ends
   std::optional<double> paraview_every;                        // [s]; default: at stage ends only
   std::string paraview_stones = "surfaces";                    // surfaces | pebbles | none
-  bool picture = true;                                         // bed.png at stage ends
+  bool picture = true;                                         // bed.png and others at stage ends
+  std::optional<double> displacement_scale;                    // red in displacements.png [m]
 };
 
 struct CaseInput {

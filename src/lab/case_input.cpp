@@ -38,9 +38,10 @@ void declare(Fields& f, ShapesInput& in) {
           "stone meshes (STL, OBJ, PLY); by default shapes are made by the stone generator");
   f.integer("shapes", in.shapes, {.at_least = 1, .at_most = 1000},
             "number of shapes that the generator makes");
-  f.choice("fidelity", in.fidelity, {"clump", "ball"},
+  f.choice("fidelity", in.fidelity, {"clump", "ball", "stand_in"},
            "clump: pebbles fill the shape; ball: one pebble of equal volume, for which the keys of shape do "
-           "not count");
+           "not count; stand_in, for further sets: one pebble of the volume that the pebbles of a stone of "
+           "[stones] have, which is to take its place");
   f.quantity("distance", in.distance, Dimension::angle, {.at_least = 0, .below = 3.14159265358979},
              "Distance: largest angle between two pebbles; larger is smoother, with more pebbles");
   f.number("ratio", in.ratio, {.above = 0, .at_most = 1},
@@ -53,6 +54,8 @@ void declare(Fields& f, ShapesInput& in) {
 
 void declare(Fields& f, StonesInput& in) {
   declare(f, static_cast<ShapesInput&>(in));
+  f.check(in.fidelity != "stand_in", "fidelity", "there are no other stones to stand in for",
+          "use clump or ball, and stand_in in a set of stones.sets");
   f.section("grading", in.grading, "stone sizes");
   f.table("sets", in.sets, "further sets of shapes by name, for the stages that name one");
 }
@@ -110,12 +113,17 @@ void declare(Fields& f, RecordInput& in) {
   f.texts("measures", in.measures, "further columns of series.csv");
   f.quantities("force_bins", in.force_bins, Dimension::force, {.above = 0},
                "limits of the histogram of contact forces");
-  f.flag("tables", in.tables, "write contacts.csv and stones.csv at the end of each stage");
+  f.texts("stages", in.stages,
+          "stages at whose ends tables, pictures and a ParaView frame are written; by default all");
+  f.flag("tables", in.tables, "write contacts.csv and stones.csv at the end of these stages");
   f.quantity("paraview_every", in.paraview_every, Dimension::time, {.above = 0},
-             "simulated time between two ParaView frames; by default one at the end of each stage");
+             "simulated time between two ParaView frames; by default one at the end of each of these stages");
   f.choice("paraview_stones", in.paraview_stones, {"surfaces", "pebbles", "none"},
            "how stones appear in ParaView");
-  f.flag("picture", in.picture, "draw the bed and its force chains at the end of each stage");
+  f.flag("picture", in.picture,
+         "draw the bed, its force chains and displacements at the end of these stages");
+  f.quantity("displacement_scale", in.displacement_scale, Dimension::length, {.above = 0},
+             "displacement within a stage that is drawn red; by default that of the stone that moved most");
   f.check(ascends(in.force_bins), "force_bins", "the limits do not ascend",
           "list the smallest first, each once");
 }

@@ -101,6 +101,10 @@ void check_stages(const Document& document, const CaseInput& in, const Simulatio
                       first->second));
     stage.check(document, in, sim);
   }
+  std::vector<std::string> names;
+  for (const auto& [name, place] : seen) names.push_back(name);
+  for (const std::string& name : in.record.stages)
+    if (!seen.contains(name)) refuse_unknown(document, "record.stages", "stage", name, names);
 }
 
 void check_time_step(const Document& document, const CaseInput& in, const Simulation& sim) {

@@ -14,12 +14,14 @@ namespace {
 using Index = std::size_t;
 
 /// One entry for each row: the number of a stone.
-std::vector<DataArray> stone_data(const Simulation& sim, const std::vector<Index>& rows) {
+std::vector<DataArray> stone_data(const Simulation& sim, const StonePlaces& before,
+                                  const std::vector<Index>& rows) {
   const Clumps& c = sim.state.clumps;
   const std::vector<StoneContacts> contacts = contacts_of_stones(sim);
   std::vector<std::int64_t> id, neighbours;
   std::vector<double> speed, diameter, stress;
-  std::vector<Vec3> velocity;
+  std::vector<Vec3> velocity, displacement;
+  const std::vector<Vec3> moved = displacements(sim.state, before);
   for (Index i : rows) {
     id.push_back(c.id[i]);
     neighbours.push_back(contacts[i].neighbours);
@@ -27,22 +29,25 @@ std::vector<DataArray> stone_data(const Simulation& sim, const std::vector<Index
     diameter.push_back(2 * equal_volume_radius(sim, i));
     stress.push_back(contacts[i].mean_stress);
     velocity.push_back(c.velocity[i]);
+    displacement.push_back(moved[i]);
   }
   return {{"id", id},
           {"neighbours", neighbours},
           {"speed [m/s]", speed},
           vector_array("velocity [m/s]", velocity),
+          vector_array("displacement [m]", displacement),
           {"diameter [m]", diameter},
           {"mean stress [Pa]", stress}};
 }
 
-PolyData stones_as_surfaces(const Simulation& sim, const std::vector<TriangleMesh>& meshes) {
+PolyData stones_as_surfaces(const Simulation& sim, const StonePlaces& before,
+                            const std::vector<TriangleMesh>& meshes) {
   std::vector<Index> rows;
   for (Index i = 0; i < sim.state.clumps.id.size(); ++i) rows.push_back(i);
-  return surfaces(posed_stones(sim.state, meshes), stone_data(sim, rows));
+  return surfaces(posed_stones(sim.state, meshes), stone_data(sim, before, rows));
 }
 
-PolyData stones_as_pebbles(const Simulation& sim) {
+PolyData stones_as_pebbles(const Simulation& sim, const StonePlaces& before) {
   const Clumps& c = sim.state.clumps;
   std::vector<Index> rows;
   std::vector<Vec3> centres;
@@ -54,7 +59,7 @@ PolyData stones_as_pebbles(const Simulation& sim) {
       radii.push_back(c.scale[i] * pebble.radius);
     }
   }
-  return spheres(centres, radii, stone_data(sim, rows));
+  return spheres(centres, radii, stone_data(sim, before, rows));
 }
 
 PolyData contacts_as_lines(const Simulation& sim) {
@@ -102,13 +107,13 @@ void Paraview::add(TimeSeries& series, const char* name, const PolyData& data, b
   if (is_new) series.add(time_, file);
 }
 
-void Paraview::add_frame(const Simulation& sim) {
+void Paraview::add_frame(const Simulation& sim, const StonePlaces& before) {
   make_folder(folder_ / "frames");
   const bool is_new = frame_ < 0 || sim.state.time != time_;
   if (is_new) ++frame_;
   time_ = sim.state.time;
-  if (stones_ == "surfaces") add(stone_series_, "stones", stones_as_surfaces(sim, surfaces_), is_new);
-  if (stones_ == "pebbles") add(stone_series_, "stones", stones_as_pebbles(sim), is_new);
+  if (stones_ == "surfaces") add(stone_series_, "stones", stones_as_surfaces(sim, before, surfaces_), is_new);
+  if (stones_ == "pebbles") add(stone_series_, "stones", stones_as_pebbles(sim, before), is_new);
   add(contact_series_, "contacts", contacts_as_lines(sim), is_new);
   add(wall_series_, "walls", walls_as_surfaces(sim), is_new);
 }

@@ -7,6 +7,7 @@
 
 #include "io/vtk.h"
 #include "lab/simulation.h"
+#include "lab/tables.h"
 
 namespace trackbed {
 
@@ -17,9 +18,9 @@ class Paraview {
   /// `stones`: surfaces, pebbles or none. Throws RunError when the folder cannot be written.
   Paraview(const Model& model, std::filesystem::path folder, std::string stones);
 
-  /// Adds a frame of the present state; replaces the last one when no time has passed (a stage that places
-  /// things).
-  void add_frame(const Simulation& sim);
+  /// Adds a frame of the present state, with the displacements of stones from `before`; replaces the last one
+  /// when no time has passed (a stage that places things).
+  void add_frame(const Simulation& sim, const StonePlaces& before);
 
  private:
   void add(TimeSeries& series, const char* name, const PolyData& data, bool is_new);

@@ -42,18 +42,18 @@ void draw_bodies(const Simulation& sim, Picture& picture) {
       picture.draw_mesh(sim.model.walls[w].shape.mesh, sim.state.walls[w].pose, 1.0, body_colour);
 }
 
-/// Stones whose centre lies at or behind `front` (y).
+/// Stones whose centre lies at or behind `front` (y); `colour` takes the stone's index.
+template <class ColourOf>
 void draw_stones(const Simulation& sim, const std::vector<TriangleMesh>& surfaces, double front,
-                 Picture& picture) {
+                 const ColourOf& colour, Picture& picture) {
   const std::vector<PosedMesh> stones = posed_stones(sim.state, surfaces);
   for (Index i = 0; i < stones.size(); ++i)
     if (stones[i].pose.position.y() >= front)
-      picture.draw_mesh(*stones[i].mesh, stones[i].pose, stones[i].scale,
-                        stone_colour(sim.state.clumps.id[i]));
+      picture.draw_mesh(*stones[i].mesh, stones[i].pose, stones[i].scale, colour(i));
 }
 
 /// From blue (weak) over yellow to red (strong); share from 0 to 1.
-Colour force_colour(double share) {
+Colour colour_of_share(double share) {
   const auto s = static_cast<float>(share);
   if (s < 0.5f) return {0.25f + 1.3f * s, 0.45f + 0.7f * s, 0.85f - 1.2f * s};
   return {0.9f, 0.8f - 1.2f * (s - 0.5f), 0.25f - 0.2f * (s - 0.5f)};
@@ -64,12 +64,33 @@ Colour force_colour(double share) {
 void draw_bed(const Simulation& sim, const std::filesystem::path& png) {
   const std::vector<TriangleMesh> surfaces = shown_surfaces(sim.model);
   const Eigen::AlignedBox3d box = box_of_bed(sim);
+  const auto grey = [&](Index i) { return stone_colour(sim.state.clumps.id[i]); };
   Picture picture(1600, 800);
   picture.look(Vec3(0.35, 1.0, -0.55), box, {0.01, 0.02, 0.48, 0.96});
-  draw_stones(sim, surfaces, box.min().y(), picture);
+  draw_stones(sim, surfaces, box.min().y(), grey, picture);
   draw_bodies(sim, picture);
   picture.look(Vec3(0.0, 1.0, 0.0), box, {0.51, 0.02, 0.48, 0.96});
-  draw_stones(sim, surfaces, box.center().y(), picture);
+  draw_stones(sim, surfaces, box.center().y(), grey, picture);
+  draw_bodies(sim, picture);
+  picture.write_png(png);
+}
+
+void draw_displacements(const Simulation& sim, const std::vector<Vec3>& moved, std::optional<double> scale,
+                        const std::filesystem::path& png) {
+  const std::vector<TriangleMesh> surfaces = shown_surfaces(sim.model);
+  const Eigen::AlignedBox3d box = box_of_bed(sim);
+  double largest = 0;
+  for (const Vec3& way : moved) largest = std::max(largest, way.norm());
+  if (scale) largest = *scale;
+  const auto colour = [&](Index i) {
+    return colour_of_share(largest > 0 ? std::min(1.0, moved[i].norm() / largest) : 0.0);
+  };
+  Picture picture(1600, 800);
+  picture.look(Vec3(0.0, 1.0, 0.0), box, {0.01, 0.02, 0.48, 0.96});
+  draw_stones(sim, surfaces, box.center().y(), colour, picture);
+  draw_bodies(sim, picture);
+  picture.look(Vec3(0.0, 0.05, -1.0), box, {0.51, 0.02, 0.48, 0.96});
+  draw_stones(sim, surfaces, box.min().y(), colour, picture);
   draw_bodies(sim, picture);
   picture.write_png(png);
 }
@@ -88,7 +109,7 @@ void draw_forces(const Simulation& sim, const std::filesystem::path& png) {
     const double share = largest > 0 ? std::sqrt(pair.force.norm() / largest) : 0.0;
     const Vec3& from = position[static_cast<Index>(pair.clump_1)];
     const Vec3& to = pair.wall >= 0 ? pair.point : position[static_cast<Index>(pair.clump_2)];
-    picture.draw_cylinder(from, to, 0.4 * reach * share, force_colour(share));
+    picture.draw_cylinder(from, to, 0.4 * reach * share, colour_of_share(share));
   }
   picture.write_png(png);
 }

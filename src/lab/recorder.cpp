@@ -93,14 +93,15 @@ void Recorder::after_step(const Simulation& sim) {
     row_due_ = next_after(time, record_.every);
   }
   if (time >= frame_due_) {
-    paraview_.add_frame(sim);
+    paraview_.add_frame(sim, places_);
     frame_due_ = next_after(time, *record_.paraview_every);
   }
 }
 
 void Recorder::close_stage(const Simulation& sim) {
   if (row_step_ != sim.state.step || row_stage_ != sim.stage) add_row(sim);
-  paraview_.add_frame(sim);
+  if (!record_.stages.empty() && std::ranges::find(record_.stages, sim.stage) == record_.stages.end()) return;
+  paraview_.add_frame(sim, places_);
   if (record_.tables) write_tables(sim);
   if (record_.picture) draw_pictures(sim);
 }
@@ -123,7 +124,9 @@ void Recorder::write_tables(const Simulation& sim) const {
 void Recorder::draw_pictures(const Simulation& sim) const {
   draw_bed(sim, of_stage(sim, "bed.png"));
   draw_forces(sim, of_stage(sim, "forces.png"));
-  for (const char* picture : {"bed.png", "forces.png"})
+  draw_displacements(sim, displacements(sim.state, places_), record_.displacement_scale,
+                     of_stage(sim, "displacements.png"));
+  for (const char* picture : {"bed.png", "forces.png", "displacements.png"})
     write_file(folder_ / picture, read_file(of_stage(sim, picture)));
 }
 
@@ -134,7 +137,7 @@ fs::path Recorder::of_stage(const Simulation& sim, const char* file) const {
 
 fs::path Recorder::write_failure(const Simulation& sim) const {
   const fs::path folder = folder_ / "failure";
-  Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim);
+  Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim, places_);
   write_contacts(sim, folder / "contacts.csv");
   write_stones(sim, places_, folder / "stones.csv");
   return folder;

@@ -1,9 +1,12 @@
 // What a run leaves in its folder while it goes on:
 //
 //   series.csv              a row every record.every of simulated time and at the end of each stage
-//   contacts.csv            every contact at the end of the last stage; stages/STAGE-contacts.csv: of each
-//   stage stones.csv              every stone, likewise bed.png, forces.png     the bed and the force chains
-//   in it, likewise paraview/*.pvd          a frame at the end of each stage, and every record.paraview_every
+//   contacts.csv            every contact at the end of the last stage
+//   stones.csv              every stone, likewise
+//   bed.png, forces.png, displacements.png
+//                           the bed, the force chains in it, and how far stones have moved, likewise
+//   stages/STAGE-*          the same at the end of each stage, or of those of record.stages
+//   paraview/*.pvd          a frame at the end of each of these stages, and every record.paraview_every
 //   failure/                tables and a ParaView frame of the last state of a run that failed
 #pragma once
 

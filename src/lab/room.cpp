@@ -25,8 +25,8 @@ bool is_in_room(const Simulation& sim, const Vec3& point) {
   return true;
 }
 
-double room_volume(const Simulation& sim) {
-  const Vec3 size = sim.container.sizes();
+double volume_in(const Eigen::AlignedBox3d& box, const Region& region) {
+  const Vec3 size = box.sizes();
   const double step = size.minCoeff() / 100;
   const Eigen::Array3d n = (size.array() / step).round();
   double inside = 0;
@@ -34,17 +34,17 @@ double room_volume(const Simulation& sim) {
     for (int y = 0; y < n.y(); ++y)
       for (int z = 0; z < n.z(); ++z) {
         const Vec3 share = (Eigen::Array3d(x, y, z) + 0.5) / n;
-        if (is_in_room(sim, sim.container.min() + share.cwiseProduct(size))) ++inside;
+        if (region(box.min() + share.cwiseProduct(size))) ++inside;
       }
   return inside / n.prod() * size.prod();
 }
 
-Vec3 point_in_room(const Simulation& sim, Rng& rng) {
-  const Vec3 low = sim.container.min(), high = sim.container.max();
+Vec3 point_in(const Eigen::AlignedBox3d& box, Rng& rng, const Region& region) {
+  const Vec3 low = box.min(), high = box.max();
   for (;;) {
     const double x = rng.uniform(low.x(), high.x()), y = rng.uniform(low.y(), high.y()),
                  z = rng.uniform(low.z(), high.z());
-    if (is_in_room(sim, {x, y, z})) return {x, y, z};
+    if (region({x, y, z})) return {x, y, z};
   }
 }
 

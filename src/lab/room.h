@@ -14,11 +14,12 @@ void check_room(const Document& document, const std::string& key, const Simulati
 
 bool is_in_room(const Simulation& sim, const Vec3& point);
 
-/// [m^3]; by counting points 1/100 of the container's shortest side apart.
-double room_volume(const Simulation& sim);
+/// Volume of the part of a box that is in the region [m^3]; by counting points 1/100 of its shortest side
+/// apart.
+double volume_in(const Eigen::AlignedBox3d& box, const Region& region);
 
-/// Evenly spread over the room.
-Vec3 point_in_room(const Simulation& sim, Rng& rng);
+/// Evenly spread over the part of a box that is in the region, which must not be empty.
+Vec3 point_in(const Eigen::AlignedBox3d& box, Rng& rng, const Region& region);
 
 enum class Walls { all, of_triangles };
 

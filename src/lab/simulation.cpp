@@ -42,6 +42,18 @@ void Simulation::stop_stones() {
   for (int c = 0; c < state.clumps.size(); ++c) set_motion(state, c, Vec3::Zero(), Vec3::Zero());
 }
 
+void Simulation::scale_step(bool scaled) {
+  constexpr double share = 0.5;
+  model.time_step.scaled_share = scaled ? share : 0.0;
+  if (scaled) return;
+  stop_stones();
+  const Clumps& c = state.clumps;
+  for (int k = 0; k < c.size(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (c.inertial_mass[i] != c.mass[i]) unscale_inertia(model, state, k);
+  }
+}
+
 int add_wall(Simulation& sim, Wall wall, const Pose& pose) {
   sim.model.walls.push_back(std::move(wall));
   sim.state.walls.emplace_back();

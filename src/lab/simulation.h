@@ -52,6 +52,10 @@ struct Simulation {
   /// Takes all speed from the stones.
   void stop_stones();
 
+  /// Begins or ends the scaling of inertia for a longer time step (dem/timestep.h); the end brings all to a
+  /// halt.
+  void scale_step(bool scaled);
+
   void step() { trackbed::step(model, state, work); }
 
   /// Before many steps with the same stones. What holds their indices must look them up again by their ids.

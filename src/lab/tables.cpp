@@ -81,13 +81,21 @@ StonePlaces places_of(const State& state) {
   return places;
 }
 
+std::vector<Vec3> displacements(const State& state, const StonePlaces& before) {
+  const Clumps& c = state.clumps;
+  std::vector<Vec3> all(c.id.size(), Vec3::Zero());
+  for (Index i = 0; i < all.size(); ++i)
+    if (const auto old = before.find(c.id[i]); old != before.end()) all[i] = c.position[i] - old->second;
+  return all;
+}
+
 void write_stones(const Simulation& sim, const StonePlaces& before, const std::filesystem::path& path) {
   CsvWriter table(path, stone_columns());
   const Clumps& c = sim.state.clumps;
   const std::vector<StoneContacts> contacts = contacts_of_stones(sim);
+  const std::vector<Vec3> moved = displacements(sim.state, before);
   for (Index i = 0; i < c.id.size(); ++i) {
     const ClumpTemplate& shape = sim.model.templates[static_cast<Index>(c.shape[i])];
-    const auto old = before.find(c.id[i]);
     const Quat& q = c.orientation[i];
     std::vector<Cell> row{double(c.id[i]), std::string_view(shape.name), c.mass[i],
                           2 * equal_volume_radius(sim, i)};
@@ -98,7 +106,7 @@ void write_stones(const Simulation& sim, const StonePlaces& before, const std::f
     row.insert(row.end(), {double(contacts[i].neighbours), double(contacts[i].contacts)});
     add_vector(row, c.force[i]);
     row.emplace_back(contacts[i].mean_stress);
-    add_vector(row, old != before.end() ? Vec3(c.position[i] - old->second) : Vec3::Zero());
+    add_vector(row, moved[i]);
     table.add_row(row);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <map>
+#include <vector>
 
 #include "lab/simulation.h"
 
@@ -16,6 +17,9 @@ void write_contacts(const Simulation& sim, const std::filesystem::path& path);
 /// Where stones were, by their ids [m].
 using StonePlaces = std::map<int, Vec3>;
 StonePlaces places_of(const State& state);
+
+/// How far each stone has come from there [m]; zero for a stone that was not there.
+std::vector<Vec3> displacements(const State& state, const StonePlaces& before);
 
 /// One row for each stone; displacements are those from `before`, zero for a stone that is not in it. Forces
 /// are the sum of its contacts, without gravity; mean_stress is positive in compression.

@@ -40,7 +40,7 @@ void energy_balance_of_the_load_closes(const Summary& summary) {
 void leaves_all_files(const fs::path& out) {
   for (const char* file :
        {"series.csv", "summary.json", "contacts.csv", "stones.csv", "bed.png", "forces.png",
-        "paraview/stones.pvd", "paraview/contacts.pvd", "paraview/walls.pvd"})
+        "displacements.png", "paraview/stones.pvd", "paraview/contacts.pvd", "paraview/walls.pvd"})
     EXPECT_GT(fs::exists(out / file) ? fs::file_size(out / file) : 0u, 100u) << file;
 }
 

@@ -88,6 +88,7 @@ TEST(same, stones_in_another_order_move_alike) {
   std::reverse(c.orientation.begin(), c.orientation.end());
   std::reverse(c.scale.begin(), c.scale.end());
   std::reverse(c.mass.begin(), c.mass.end());
+  std::reverse(c.inertial_mass.begin(), c.inertial_mass.end());
   int most = 0;  // contacts at a time
   for (int k = 0; k < 1300; ++k) {
     a.step();

@@ -44,8 +44,8 @@ void declare(Fields& f, AdjustInput& in) {
            "upper bound on the friction of all contacts during this stage");
 }
 
-/// Shrinks or grows all stones about their centres until the mean stress is that asked for (PRRA; eq. in
-/// docs/theory.md).
+/// Shrinks or grows all stones, with a scaled time step, about their centres until the mean stress is that
+/// asked for (PRRA; eq. in docs/theory.md).
 class Adjust : public Stage {
  public:
   explicit Adjust(const AdjustInput& in) : in_(in) {}
@@ -55,6 +55,7 @@ class Adjust : public Stage {
     if (in_.friction) sim.model.pairs = pairs_.with_friction_up_to(*in_.friction);
     target_ = in_.stress ? *in_.stress : stress_of_weight(sim);
     start_ = next_ = sim.state.step;
+    sim.scale_step(true);
     sim.changed();
   }
 
@@ -80,6 +81,8 @@ class Adjust : public Stage {
   std::vector<Result> close(Simulation& sim) override {
     const BedStress now = bed_stress(sim);
     sim.model.pairs = pairs_;
+    sim.scale_step(false);
+    sim.changed();
     return {{"factor", factor_, Dimension::none},
             {"rounds", static_cast<double>(round_), Dimension::none},
             {"stress", now.mean, Dimension::stress},

@@ -56,6 +56,7 @@ void Parting::open(Simulation& sim, double share_of_stiffness) {
   sim.model.local_damping = 0.7;
   sim.model.limits.overlap = sim.model.limits.speed = std::numeric_limits<double>::infinity();
   sim.model.pairs = pairs_.with_friction_up_to(0);
+  sim.scale_step(true);
   soften(sim, share_of_stiffness, sim.model.pairs);
   sim.changed();
 }
@@ -94,7 +95,7 @@ void Parting::close(Simulation& sim) {
   sim.model.local_damping = damping_;
   sim.model.limits = limits_;
   sim.model.pairs = pairs_;
-  sim.stop_stones();
+  sim.scale_step(false);
   sim.changed();
 }
 

@@ -4,9 +4,9 @@
 
 #include "base/rng.h"
 #include "lab/case.h"
-#include "lab/checks.h"
 #include "lab/room.h"
 #include "lab/stages/parting.h"
+#include "lab/stages/selection.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -14,13 +14,12 @@ namespace {
 
 struct ReplaceInput : StageInput {
   std::string set;
-  std::string region;
-  bool outside = false;
+  Selection where;
   double mean_overlap = 0.005;
   double time_limit = 1;  // [s]
   void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
     if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
-    if (!region.empty()) check_region(document, experiment, here + ".region", region);
+    where.check(document, experiment, here);
   }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
@@ -28,13 +27,11 @@ struct ReplaceInput : StageInput {
 void declare(Fields& f, ReplaceInput& in) {
   declare_common(f, in);
   f.text("set", in.set, "a set of stones.sets whose shapes take over; by default those of [stones]");
-  f.text("region", in.region, "stones whose centres lie in it are replaced; by default all");
-  f.flag("outside", in.outside, "replace those outside the region instead");
+  declare_selection(f, in.where, "are replaced");
   f.number("mean_overlap", in.mean_overlap, {.above = 0, .below = 1},
            "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
-  f.check(!in.outside || !in.region.empty(), "outside", "there is no region to be outside of", "give region");
 }
 
 /// Puts stones of another set in the place of those there: equal volume, same centre, any orientation (PRRA,
@@ -50,7 +47,7 @@ class Replace : public Stage {
     std::vector<Reshaped> stones;
     for (int clump = 0; clump < c.size(); ++clump) {
       const auto k = static_cast<std::size_t>(clump);
-      if (!in_.region.empty() && sim.regions.at(in_.region)(c.position[k]) == in_.outside) continue;
+      if (!in_.where.contains(sim, c.position[k])) continue;
       const int shape = set.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set.count)));
       const auto volume = [&](int t) { return sim.model.templates[static_cast<std::size_t>(t)].volume; };
       stones.push_back({clump, shape, c.scale[k] * std::cbrt(volume(c.shape[k]) / volume(shape)),
@@ -67,7 +64,7 @@ class Replace : public Stage {
 
   void control(Simulation& sim) override { parting_.control(sim); }
   bool finished(const Simulation& sim) override {
-    return parting_.is_done(sim, in_.mean_overlap, in_.time_limit);
+    return replaced_ == 0 || parting_.is_done(sim, in_.mean_overlap, in_.time_limit);
   }
 
   std::vector<Result> close(Simulation& sim) override {

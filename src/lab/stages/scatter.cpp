@@ -3,10 +3,10 @@
 #include "base/error.h"
 #include "base/rng.h"
 #include "lab/case.h"
-#include "lab/checks.h"
 #include "lab/grading.h"
 #include "lab/room.h"
 #include "lab/stages/parting.h"
+#include "lab/stages/selection.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -15,16 +15,27 @@ namespace {
 struct ScatterInput : StageInput {
   double porosity = 0.4;
   std::string set;  // empty: that of [stones]
+  Selection where;
   double mean_overlap = 0.01;
   double time_limit = 1;  // [s]
+  bool is_room(const Simulation& sim, const Vec3& point) const {
+    return where.contains(sim, point) && is_in_room(sim, point);
+  }
+  /// Random numbers for a part of space are those of the stage; the whole container has the same stones
+  /// however it is filled.
+  Rng numbers(const Simulation& sim, const std::string& what) const {
+    return {sim.seed, where.is_all() ? what : what + " " + name};
+  }
   std::vector<double> sizes(const CaseInput& experiment, const Simulation& sim) const {
-    Rng rng(sim.seed, "sizes");
-    return draw_sizes(experiment.stones.grading, (1.0 - porosity) * room_volume(sim), rng);
+    Rng rng = numbers(sim, "sizes");
+    const double room = volume_in(sim.container, [&](const Vec3& point) { return is_room(sim, point); });
+    return draw_sizes(experiment.stones.grading, (1.0 - porosity) * room, rng);
   }
   void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override {
     if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
     check_room(document, here, sim);
-    if (sizes(experiment, sim).empty())
+    where.check(document, experiment, here);
+    if (where.is_all() && sizes(experiment, sim).empty())
       document.fail(here + ".porosity", "no stone is left: the container is too small for the grading",
                     "make the container larger, the porosity lower or the stones smaller");
   }
@@ -36,6 +47,7 @@ void declare(Fields& f, ScatterInput& in) {
   f.number("porosity", in.porosity, {.above = 0, .below = 1},
            "nominal: the stones' volume is (1 - porosity) x the free volume of the container");
   f.text("set", in.set, "a set of stones.sets to take the stones from; by default those of [stones]");
+  declare_selection(f, in.where, "are placed");
   f.number("mean_overlap", in.mean_overlap, {.above = 0, .below = 1},
            "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
@@ -50,7 +62,7 @@ class Scatter : public Stage {
 
   void open(Simulation& sim) override {
     sizes_ = in_.sizes(experiment_, sim);
-    Rng rng(sim.seed, "places");
+    Rng rng = in_.numbers(sim, "places");
     const StoneSet set = sim.stone_set(in_.set);
     for (double size : sizes_) place(sim, set, size, rng);
     parting_.open(sim);
@@ -78,7 +90,8 @@ class Scatter : public Stage {
     const int stone = add_clump(sim.model, sim.state, shape, scale, set.material, {});
     const auto k = static_cast<std::size_t>(stone);
     for (int tries = 0; tries < 10'000; ++tries) {
-      sim.state.clumps.position[k] = point_in_room(sim, rng);
+      sim.state.clumps.position[k] =
+          point_in(sim.container, rng, [&](const Vec3& point) { return in_.is_room(sim, point); });
       sim.state.clumps.orientation[k] = rng.rotation();
       if (is_clear_of_walls(sim, stone, 0)) return;
     }

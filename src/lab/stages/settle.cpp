@@ -16,6 +16,7 @@ struct SettleInput : StageInput {
   std::optional<double> friction;  // during this stage
   std::optional<double> damping;   // during this stage
   std::optional<double> gravity;   // during this stage [m/s^2]
+  bool scaled = false;
   void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
     if (gravity && experiment.numerics.gravity.isZero(0))
       document.fail(here + ".gravity", "there is no gravity to raise: its direction is not known",
@@ -35,6 +36,10 @@ void declare(Fields& f, SettleInput& in) {
   f.number("damping", in.damping, {.at_least = 0, .below = 1}, "local damping during this stage");
   f.quantity("gravity", in.gravity, Dimension::acceleration, {.above = 0},
              "raised gravity during this stage, in its usual direction: stones fall and pack faster");
+  f.flag(
+      "scaled_step", in.scaled,
+      "stones get more inertia, not weight, where this allows a longer time step: rest is reached in fewer "
+      "steps, on another way; not for stones that fall");
 }
 
 class Settle : public Stage {
@@ -49,6 +54,7 @@ class Settle : public Stage {
     if (in_.gravity) sim.model.gravity = *in_.gravity * gravity_.normalized();
     if (in_.damping) sim.model.local_damping = *in_.damping;
     if (in_.friction) sim.model.pairs = pairs_.with_friction_up_to(*in_.friction);
+    if (in_.scaled) sim.scale_step(true);
   }
 
   bool finished(const Simulation& sim) override {
@@ -70,6 +76,10 @@ class Settle : public Stage {
     sim.model.pairs = pairs_;
     sim.model.local_damping = damping_;
     sim.model.gravity = gravity_;
+    if (in_.scaled) {
+      sim.scale_step(false);
+      sim.changed();
+    }
     return {{"time", sim.state.time - start_, Dimension::time}, {"unbalanced_ratio", ratio, Dimension::none}};
   }
 

@@ -48,6 +48,34 @@ TEST(State, AddAndRescale) {
   EXPECT_LT((s.angular_momentum[3] - 2650 * Vec3(4e-8, 10e-8, 18e-8)).norm(), 1e-18);
 }
 
+TEST(State, InertiaIsScaledAndWeightIsNot) {
+  Simulation sim = row();
+  const int c = add_clump(sim.model, sim.state, 1, 2, 0, {{0, 0, 1}, Quat(0, 1, 0, 0)});
+  Clumps& s = sim.state.clumps;
+  const double mass = s.mass[3];
+  const Vec3 inertia = s.inertia[3];
+  set_motion(sim.state, c, {1, 2, 3}, {4, 5, 6});
+  const Vec3 momentum = s.angular_momentum[3];
+  const double kinetic = 0.5 * (mass * 14 + Vec3(4, 5, 6).dot(momentum));
+
+  scale_inertia(sim.state, c, 4);  // heavier: the momentum stays
+  EXPECT_EQ(s.mass[3], mass);
+  EXPECT_EQ(s.inertial_mass[3], 4 * mass);
+  EXPECT_LT((s.velocity[3] - 0.25 * Vec3(1, 2, 3)).norm(), 1e-15);
+  EXPECT_LT((s.angular_momentum[3] - momentum).norm(), 1e-15);
+  EXPECT_NEAR(s.losses[3].damping, 0.75 * kinetic, 1e-12 * kinetic);
+
+  rescale(sim.model, sim.state, c, 0.5);  // a new size keeps the share
+  EXPECT_NEAR(s.inertial_mass[3] / s.mass[3], 4, 1e-15);
+  rescale(sim.model, sim.state, c, 2);
+
+  scale_inertia(sim.state, c, 0.5);  // lighter: the speed stays
+  EXPECT_LT((s.velocity[3] - 0.25 * Vec3(1, 2, 3)).norm(), 1e-15);
+  unscale_inertia(sim.model, sim.state, c);
+  EXPECT_EQ(s.inertial_mass[3], s.mass[3]);
+  EXPECT_NEAR((s.inertia[3] - inertia).norm(), 0, 1e-15 * inertia.norm());
+}
+
 // The others keep their ids, their order, and what their contacts remember.
 TEST(State, RemoveKeepsTheOthersMemory) {
   Simulation sim = row();

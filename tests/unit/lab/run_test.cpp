@@ -1,6 +1,7 @@
 // What a run writes, with stages of the test's own.
 #include "lab/run.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -109,9 +110,21 @@ TEST_F(Run, TablesTellOfEveryContactAndStone) {
   ASSERT_EQ(stones.size(), 2u);
   EXPECT_TRUE(stones[1].starts_with("0,ball,0.0888")) << stones[1];
   EXPECT_EQ(lines("contacts.csv"), lines("stages/drop-contacts.csv"));
-  for (const char* file : {"bed.png", "forces.png", "paraview/stones.pvd", "paraview/contacts.pvd",
-                           "paraview/walls.pvd", "paraview/frames/stones-00000.vtp"})
+  for (const char* file : {"bed.png", "forces.png", "displacements.png", "paraview/stones.pvd",
+                           "paraview/contacts.pvd", "paraview/walls.pvd", "paraview/frames/stones-00000.vtp"})
     EXPECT_TRUE(fs::exists(out_ / file)) << file;
+}
+
+TEST_F(Run, OnlyTheStagesAskedForLeaveTablesAndPictures) {
+  record_.stages = {"rest"};
+  std::vector<NamedStage> stages = list(steps("drop", 250));
+  stages.push_back(steps("rest", 50));
+  run(std::move(stages));
+  for (const char* file : {"contacts.csv", "stones.csv", "bed.png", "forces.png", "displacements.png"}) {
+    EXPECT_FALSE(fs::exists(out_ / "stages" / fmt::format("drop-{}", file))) << file;
+    EXPECT_TRUE(fs::exists(out_ / "stages" / fmt::format("rest-{}", file))) << file;
+    EXPECT_TRUE(fs::exists(out_ / file)) << file;
+  }
 }
 
 TEST_F(Run, SummaryHoldsStagesMeasuresAndHash) {
