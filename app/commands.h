@@ -9,5 +9,6 @@ int check_command(int argc, char** argv);
 int describe_command(int argc, char** argv);
 int bench_command(int argc, char** argv);
 int stone_command(int argc, char** argv);
+int study_command(int argc, char** argv);
 
 }  // namespace trackbed

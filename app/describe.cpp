@@ -9,6 +9,7 @@
 #include "dem/laws/table.h"
 #include "lab/case.h"
 #include "lab/measure.h"
+#include "lab/study/study.h"
 
 namespace trackbed {
 namespace {
@@ -61,12 +62,19 @@ int describe_command(int argc, char** argv) {
   const auto defaults = std::make_unique<CaseInput>();
   const Description description = describe_with("case", "A case is one experiment: one TOML file.",
                                                 [&](Fields& f) { declare(f, *defaults); });
+  StudyInput study_defaults;
+  const Description study =
+      describe_with("study", "A study runs a case under many conditions: one TOML file.",
+                    [&](Fields& f) { declare(f, study_defaults); });
   if (markdown)
-    fmt::print("{}{}", to_markdown(description), measures_as_markdown());
+    fmt::print("{}{}\n{}", to_markdown(description), measures_as_markdown(), to_markdown(study));
   else if (name.empty())
-    fmt::print("{}\nalso: trackbed describe measures, trackbed describe laws\n", to_text(description));
+    fmt::print("{}\nalso: trackbed describe measures, trackbed describe laws, trackbed describe study\n",
+               to_text(description));
   else if (name == "measures")
     fmt::print("{}", measures_as_text());
+  else if (name == "study")
+    fmt::print("{}", to_text(study));
   else if (name == "laws")
     fmt::print("{}", laws_as_text());
   else

@@ -2,6 +2,9 @@
 find_package(fmt REQUIRED)
 target_link_libraries(trackbed_base PUBLIC fmt::fmt)
 
+find_package(Boost 1.74 REQUIRED)
+target_link_libraries(trackbed_lab PRIVATE Boost::headers)
+
 find_package(CGAL 5.5 REQUIRED)
 target_link_libraries(trackbed_geom PRIVATE CGAL::CGAL)
 

@@ -52,12 +52,20 @@ void set_places(Node& node, const Place& place) {
   for (Node& item : node.items) set_places(item, place);
 }
 
+/// What an element of a list is called: its name, or else its kind, as stages are; nothing when it has
+/// neither.
+std::optional<std::string> name_of(const Node& element) {
+  for (const char* key : {"name", "kind"})
+    if (const Node* name = element.find(key); name && name->type == Node::Type::text)
+      return std::get<std::string>(name->value);
+  return std::nullopt;
+}
+
 /// Says why a list has no such element.
 void add_no_element(const Node& list, std::string_view part, const Place& place, Diagnostics& errors) {
   std::vector<std::string> names;
   for (const Node& item : list.items)
-    if (const Node* name = item.find("name"); name && name->type == Node::Type::text)
-      names.push_back(std::get<std::string>(name->value));
+    if (const auto name = name_of(item)) names.push_back(*name);
   const std::size_t n = list.items.size();
   const std::string problem = fmt::format("{} has no element {}", list.key, part);
   const std::string by_index =
@@ -112,10 +120,8 @@ Node* step_into(Node& node, std::string_view part) {
   const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), index);
   if (error == std::errc{} && end == part.data() + part.size())
     return index < node.items.size() ? &node.items[index] : nullptr;
-  for (Node& item : node.items) {
-    const Node* name = item.find("name");
-    if (name && name->type == Node::Type::text && std::get<std::string>(name->value) == part) return &item;
-  }
+  for (Node& item : node.items)
+    if (name_of(item) == part) return &item;
   return nullptr;
 }
 

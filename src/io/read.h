@@ -15,8 +15,9 @@ namespace trackbed {
 class Document {
  public:
   /// `overrides`: "key=value" as given to --set: a dotted path ("stages.2.time", counted from 0, or
-  /// "stages.load.time" by the name of an element) and a TOML value; a bare word is a text.
-  /// Throws InputError when the file cannot be read or is not TOML, or an override leads nowhere.
+  /// "stages.load.time" by the name of an element, or its kind where it has none) and a TOML value; a bare
+  /// word is a text. Throws InputError when the file cannot be read or is not TOML, or an override leads
+  /// nowhere.
   explicit Document(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
   /// The same for text in memory; `name` stands for the file in messages, relative paths start from its
   /// folder.

@@ -285,10 +285,10 @@ TEST(Overrides, ErrorsNameTheOverride) {
             "  hint: give a value from 0 to 10");
   EXPECT_EQ(error_of(sample::good_text, {"stages.5.time_limit=1 s"}),
             "--set stages.5.time_limit=1 s: error: stages has no element 5\n"
-            "  hint: elements are counted from 0 to 1; known here: rest");
+            "  hint: elements are counted from 0 to 1; known here: rest, cycle");
   EXPECT_EQ(error_of(sample::good_text, {"stages.resst.time_limit=1 s"}),
             "--set stages.resst.time_limit=1 s: error: stages has no element resst\n"
-            "  hint: elements are counted from 0 to 1; did you mean rest? known here: rest");
+            "  hint: elements are counted from 0 to 1; did you mean rest? known here: rest, cycle");
   EXPECT_EQ(error_of(sample::good_text, {"seed"}),
             "--set seed: error: there is no =\n"
             "  hint: write --set key=value, for example --set seed=3");

@@ -1,0 +1,280 @@
+// trackbed study: one case under many conditions and seeds, several runs at a time.
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <fcntl.h>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <deque>
+#include <map>
+#include <thread>
+
+#include "base/error.h"
+#include "command_line.h"
+#include "commands.h"
+#include "io/files.h"
+#include "io/progress.h"
+#include "lab/study/results.h"
+#include "workers.h"
+
+namespace trackbed {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+struct StudyOptions {
+  fs::path file, out;
+  std::string until;
+  int jobs = 0, threads = 1, most_repeats = 20;
+  bool retry = false;
+};
+
+/// "sleeper.settlement < 5 %": seeds are added until the interval is that narrow.
+struct Goal {
+  std::string measure;
+  double width = 0;  // half of the 95 % interval over the mean
+};
+
+Goal goal_of(const std::string& text) {
+  const std::size_t sign = text.find('<');
+  Goal goal;
+  if (sign != std::string::npos) {
+    goal.measure = text.substr(0, sign);
+    goal.measure.erase(goal.measure.find_last_not_of(' ') + 1);
+    try {
+      std::size_t end = 0;
+      const std::string number = text.substr(sign + 1);
+      goal.width = std::stod(number, &end);
+      if (number.find('%', end) != std::string::npos) goal.width /= 100;
+    } catch (const std::exception&) {
+      goal.width = 0;
+    }
+  }
+  if (goal.measure.empty() || !(goal.width > 0))
+    throw InputError(fmt::format(
+        "--repeat-until \"{}\": give a measure and the width of its interval, \"push.force_peak < 5 %\"",
+        text));
+  return goal;
+}
+
+/// Keeps a second study out of the folder while this one lives.
+class Lock {
+ public:
+  explicit Lock(const fs::path& folder)
+      : file_(::open((folder / ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+    if (file_ < 0) throw InputError(fmt::format("{}: cannot be written", folder.string()));
+    if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
+      throw InputError(fmt::format("{}: another study is at work in this folder", folder.string()));
+  }
+  ~Lock() { ::close(file_); }
+  Lock(const Lock&) = delete;
+  Lock& operator=(const Lock&) = delete;
+
+ private:
+  int file_;
+};
+
+/// A number of a line "NAME:   1234 kB" of a file of /proc [kB]; 0 when there is none.
+double kilobytes_in(const fs::path& file, const std::string& name) {
+  std::error_code gone;
+  if (!fs::exists(file, gone)) return 0;
+  const std::string text = read_file(file);
+  const std::size_t at = text.find(name + ":");
+  return at == std::string::npos ? 0 : std::strtod(text.c_str() + at + name.size() + 1, nullptr);
+}
+
+class StudyRun {
+ public:
+  StudyRun(const StudyOptions& options, const Document& document, StudyInput study)
+      : o_(options), study_(std::move(study)), conditions_(conditions_of(document, study_)) {
+    if (!o_.until.empty()) goal_ = goal_of(o_.until);
+    for (Member& member : members_of(study_, conditions_)) add(std::move(member));
+  }
+
+  /// Runs what is not done; returns whether all members succeeded.
+  bool run() {
+    tell_beginning();
+    write_tables();
+    while (!stop_asked && (!queue_.empty() || workers_.running() > 0)) {
+      while (!queue_.empty() && workers_.running() < o_.jobs && has_memory_for_another()) start_next();
+      while (const auto ended = workers_.next_ended()) take(*ended);
+      tell_progress();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    workers_.stop();
+    write_tables();
+    return tell_end();
+  }
+
+ private:
+  fs::path folder_of(const Member& member) const { return o_.out / "members" / member.name; }
+
+  void add(Member member) {
+    Outcome outcome = outcome_of(member, folder_of(member));
+    if (outcome.status == MemberStatus::failed && o_.retry) outcome = {};
+    if (outcome.status == MemberStatus::waiting) queue_.push_back(members_.size());
+    members_.push_back(std::move(member));
+    outcomes_.push_back(std::move(outcome));
+  }
+
+  void tell_beginning() const {
+    const auto count = [&](MemberStatus status) {
+      return std::ranges::count(outcomes_, status, &Outcome::status);
+    };
+    fmt::print("{}: {} conditions, {} members: {} done, {} failed, {} to run, {} at a time\n", study_.title,
+               conditions_.size(), members_.size(), count(MemberStatus::done), count(MemberStatus::failed),
+               queue_.size(), o_.jobs);
+    std::map<std::string, int> changes;
+    for (const Outcome& outcome : outcomes_)
+      if (outcome.status == MemberStatus::waiting && !outcome.cause.empty()) ++changes[outcome.cause];
+    for (const auto& [change, n] : changes) fmt::print("  {} of them run again: {}\n", n, change);
+    std::fflush(stdout);
+  }
+
+  /// The runs that are there tell what one takes.
+  bool has_memory_for_another() {
+    for (const auto& [process, member] : running_)
+      peak_ = std::max(peak_, kilobytes_in(fmt::format("/proc/{}/status", process), "VmHWM"));
+    if (running_.empty()) return true;
+    return kilobytes_in("/proc/meminfo", "MemAvailable") > 1.3 * peak_;
+  }
+
+  void start_next() {
+    const std::size_t m = queue_.front();
+    queue_.pop_front();
+    const fs::path folder = folder_of(members_[m]);
+    fs::remove_all(folder);
+    make_folder(folder);
+    std::vector<std::string> arguments{"run",       study_.base.string(),       "--out",  folder.string(),
+                                       "--threads", std::to_string(o_.threads), "--quiet"};
+    for (const std::string& change : members_[m].set) arguments.insert(arguments.end(), {"--set", change});
+    running_[workers_.start(arguments, folder / "log.txt")] = m;
+  }
+
+  void take(const Ended& ended) {
+    const std::size_t m = running_.at(ended.process);
+    running_.erase(ended.process);
+    Outcome& outcome = outcomes_[m];
+    if (ended.succeeded) {
+      outcome = outcome_of(members_[m], folder_of(members_[m]));
+      if (outcome.status != MemberStatus::done)
+        outcome = {MemberStatus::failed, "it left no summary.json", {}};
+      ++finished_;
+    } else if (ended.was_stopped && ++stopped_[m] < most_stops) {
+      queue_.push_back(m);  // by somebody or for want of memory: not the member's own fault
+      return;
+    } else if (!stop_asked) {
+      outcome = {MemberStatus::failed, ended.cause, {}};
+    }
+    if (outcome.status == MemberStatus::failed) {
+      write_failure(members_[m], outcome.cause, folder_of(members_[m]));
+      fmt::print("{}: {}\n", members_[m].name, outcome.cause);
+      std::fflush(stdout);
+    }
+    if (goal_) add_repeats(members_[m].condition);
+    write_tables();
+  }
+
+  /// One more seed for a condition all of whose members have ended, unless its interval is narrow enough.
+  void add_repeats(std::size_t condition) {
+    int repeats = 0;
+    std::uint64_t last = 0;
+    for (std::size_t m = 0; m < members_.size(); ++m) {
+      if (members_[m].condition != condition) continue;
+      if (outcomes_[m].status == MemberStatus::waiting) return;
+      last = std::max(last, members_[m].seed);
+      ++repeats;
+    }
+    const Estimate e = estimate_of(goal_->measure, condition, members_, outcomes_);
+    if (repeats < o_.most_repeats && !(e.relative_width() < goal_->width))
+      add(make_member(study_, conditions_, condition, last + 1));
+  }
+
+  void write_tables() const {
+    write_members(study_, conditions_, members_, outcomes_, o_.out / "study.csv");
+    write_table(study_, conditions_, members_, outcomes_, o_.out / "table.csv");
+  }
+
+  void tell_progress() {
+    const auto now = Clock::now();
+    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    if (now - told_ < std::chrono::seconds(terminal ? 1 : 30)) return;
+    told_ = now;
+    const double seconds = std::chrono::duration<double>(now - start_).count();
+    const auto left = static_cast<double>(queue_.size()) + 0.5 * workers_.running();
+    const std::string eta = finished_ > 0 ? duration_text(seconds / finished_ * left) + " left"
+                                          : std::string("no member has ended yet");
+    fmt::print(stderr, "{}{} of {} members, {} running, {}{}", terminal ? "\r" : "",
+               members_.size() - queue_.size() - static_cast<std::size_t>(workers_.running()),
+               members_.size(), workers_.running(), eta, terminal ? "   " : "\n");
+  }
+
+  bool tell_end() const {
+    const auto failed = std::ranges::count(outcomes_, MemberStatus::failed, &Outcome::status);
+    if (stop_asked) {
+      fmt::print("stopped: the same command goes on from here\n");
+      return false;
+    }
+    if (failed > 0) fmt::print("{} members failed; --retry runs them again\n", failed);
+    fmt::print("results: {} and table.csv\n", (o_.out / "study.csv").string());
+    return failed == 0;
+  }
+
+  StudyOptions o_;
+  StudyInput study_;
+  std::vector<Condition> conditions_;
+  std::vector<Member> members_;
+  std::vector<Outcome> outcomes_;  // beside the members
+  std::deque<std::size_t> queue_;  // members that wait
+  std::map<pid_t, std::size_t> running_;
+  static constexpr int most_stops = 3;
+  std::map<std::size_t, int> stopped_;  // how often a signal ended a member
+  Workers workers_;
+  std::optional<Goal> goal_;
+  double peak_ = 0;  // memory of the largest run so far [kB]
+  int finished_ = 0;
+  Clock::time_point start_ = Clock::now(), told_ = start_;
+};
+
+}  // namespace
+
+int study_command(int argc, char** argv) {
+  StudyOptions o;
+  CLI::App app("Runs a case under many conditions and seeds. Called again, it goes on where it stood.",
+               "trackbed study");
+  app.add_option("study", o.file, "the study file (TOML)")->required();
+  app.add_option("--out", o.out, "folder of the results; default: out/NAME of the study's folder");
+  app.add_option("--jobs", o.jobs, "runs at a time; by default as many as there are cores for their threads")
+      ->check(CLI::Range(1, 4096));
+  app.add_option("--threads", o.threads, "threads of each run")
+      ->check(CLI::Range(1, 4096))
+      ->capture_default_str();
+  app.add_option("--repeat-until", o.until,
+                 "add seeds until the 95 % interval is so narrow: \"MEASURE < 5 %\"");
+  app.add_option("--most-repeats", o.most_repeats, "seeds of a condition that --repeat-until stops at")
+      ->check(CLI::Range(2, 100000))
+      ->capture_default_str();
+  app.add_flag("--retry", o.retry, "run members again that failed");
+  if (const auto code = parse(app, argc, argv)) return *code;
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  if (o.jobs == 0) o.jobs = std::max(1, cores / o.threads);
+  if (o.jobs * o.threads > cores)
+    fmt::print(stderr, "{} runs of {} threads on {} cores wait for each other\n", o.jobs, o.threads, cores);
+  if (o.out.empty()) o.out = fs::path("out") / fs::absolute(o.file).parent_path().filename();
+
+  const Document document(o.file);
+  StudyInput study;
+  document.read(study);
+  make_folder(o.out);
+  const Lock lock(o.out);
+  for (int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_asked = 1; });
+  return StudyRun(o, document, std::move(study)).run() ? 0 : 1;
+}
+
+}  // namespace trackbed

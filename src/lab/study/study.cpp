@@ -1,0 +1,147 @@
+#include "lab/study/study.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+
+#include "base/error.h"
+#include "io/echo.h"
+#include "lab/case.h"
+#include "lab/checks.h"
+
+namespace trackbed {
+
+void declare(Fields& f, ConditionInput& in) {
+  f.text(required("name"), in.name, "name of the condition in the tables");
+  f.texts("set", in.set, "changes of the case, KEY=VALUE as for --set");
+}
+
+void declare(Fields& f, SweepInput& in) {
+  f.text(required("key"), in.key, "key of the case: stones.ratio, stages.load.force_max");
+  f.texts(required("values"), in.values, "its values, each as text");
+  f.text("along", in.along, "key of another sweep with as many values: both change together");
+  f.check(!in.values.empty(), "values", "there is no value", "list at least one");
+}
+
+void declare(Fields& f, StudyInput& in) {
+  f.text(required("title"), in.title, "what the study is about");
+  f.path(required("case"), in.base, "the case file that all members start from");
+  f.texts("set", in.set, "changes of the case in all members, KEY=VALUE as for --set");
+  f.integer("repeats", in.repeats, {.at_least = 1, .at_most = 100000}, "seeds of each condition");
+  f.integer("first_seed", in.first_seed, {}, "seeds are counted up from here");
+  f.texts("measures", in.measures,
+          "measures of summary.json that the tables hold; by default all results of stages");
+  f.sequence("conditions", in.conditions,
+             "conditions that are written out; by default one, the case as it stands");
+  f.sequence("sweep", in.sweeps,
+             "keys that go through lists of values, crossed with each other and the conditions");
+}
+
+namespace {
+
+/// "stones.ratio=0.3" in its two parts.
+std::pair<std::string, std::string> parts_of(const std::string& change) {
+  const std::size_t equals = change.find('=');
+  if (equals == std::string::npos) return {change, ""};
+  return {change.substr(0, equals), change.substr(equals + 1)};
+}
+
+void check_sweeps(const Document& document, const StudyInput& study) {
+  for (std::size_t k = 0; k < study.sweeps.size(); ++k) {
+    const SweepInput& sweep = study.sweeps[k];
+    const std::string here = fmt::format("sweep.{}", k);
+    if (sweep.along.empty()) continue;
+    const auto leader = std::ranges::find(study.sweeps, sweep.along, &SweepInput::key);
+    if (leader == study.sweeps.end() || !leader->along.empty() || sweep.along == sweep.key)
+      document.fail(here + ".along", fmt::format("there is no sweep of {} to go along with", sweep.along),
+                    "name the key of a sweep that goes by itself");
+    if (leader->values.size() != sweep.values.size())
+      document.fail(here + ".values",
+                    fmt::format("{} values go along with {} of {}", sweep.values.size(),
+                                leader->values.size(), sweep.along),
+                    "give as many of each");
+  }
+}
+
+/// The condition with one more key.
+Condition with(Condition condition, const std::string& key, const std::string& value) {
+  condition.inputs[key] = value;
+  condition.set.push_back(key + "=" + value);
+  return condition;
+}
+
+/// Letters, digits, point, dash and underscore, so that it can be a part of a file name.
+std::string plain(const std::string& text) {
+  std::string out;
+  for (char c : text) {
+    const bool keeps = std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '-';
+    if (keeps || (!out.empty() && out.back() != '_')) out += keeps ? c : '_';
+  }
+  while (!out.empty() && out.back() == '_') out.pop_back();
+  return out;
+}
+
+}  // namespace
+
+std::vector<Condition> conditions_of(const Document& document, const StudyInput& study) {
+  check_sweeps(document, study);
+  std::vector<Condition> all;
+  for (const ConditionInput& in : study.conditions) {
+    Condition condition{in.name, {}, in.set};
+    for (const std::string& change : in.set) condition.inputs.insert(parts_of(change));
+    all.push_back(std::move(condition));
+  }
+  if (all.empty()) all.emplace_back();
+  for (const SweepInput& sweep : study.sweeps) {
+    if (!sweep.along.empty()) continue;
+    std::vector<Condition> crossed;
+    for (const Condition& condition : all)
+      for (std::size_t v = 0; v < sweep.values.size(); ++v) {
+        Condition next = with(condition, sweep.key, sweep.values[v]);
+        const std::string last = sweep.key.substr(sweep.key.rfind('.') + 1);
+        next.name += fmt::format("{}{} {}", next.name.empty() ? "" : ", ", last, sweep.values[v]);
+        for (const SweepInput& follower : study.sweeps)
+          if (follower.along == sweep.key) next = with(std::move(next), follower.key, follower.values[v]);
+        crossed.push_back(std::move(next));
+      }
+    all = std::move(crossed);
+  }
+  if (all.size() == 1 && all[0].name.empty()) all[0].name = "case";
+  std::set<std::string> names;
+  for (const Condition& condition : all)
+    if (!names.insert(plain(condition.name)).second)
+      document.fail("conditions", fmt::format("two conditions are called {}", condition.name),
+                    "give each a name of its own");
+  return all;
+}
+
+Member make_member(const StudyInput& study, const std::vector<Condition>& conditions, std::size_t condition,
+                   std::uint64_t seed) {
+  Member member;
+  member.condition = condition;
+  member.seed = seed;
+  member.name = fmt::format("{}-seed-{}", plain(conditions[condition].name), seed);
+  member.set = study.set;
+  for (const std::string& change : conditions[condition].set) member.set.push_back(change);
+  member.set.push_back(fmt::format("seed={}", seed));
+  try {
+    CaseInput experiment;
+    Document(study.base, member.set).read(experiment);
+    member.input = echo(experiment);
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("the condition {}: {}", conditions[condition].name, error.what()));
+  }
+  return member;
+}
+
+std::vector<Member> members_of(const StudyInput& study, const std::vector<Condition>& conditions) {
+  std::vector<Member> members;
+  for (int k = 0; k < study.repeats; ++k)
+    for (std::size_t c = 0; c < conditions.size(); ++c)
+      members.push_back(make_member(study, conditions, c, study.first_seed + static_cast<std::uint64_t>(k)));
+  return members;
+}
+
+}  // namespace trackbed
