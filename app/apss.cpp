@@ -94,10 +94,20 @@ fs::path run_balls(const ApssOptions& o, const std::string& region, const std::s
   return stones;
 }
 
+/// Pebbles of a bed all of whose stones have shapes, as many as those have that were replaced.
+double pebbles_of_all(const Summary& adapted, const Work& work) {
+  double replaced = 0;
+  for (const Result& r : adapted.measures)
+    if (r.name.ends_with(".replaced")) replaced += r.value;
+  return replaced > 0 ? work.stones * (work.pebbles - (work.stones - replaced)) / replaced : work.pebbles;
+}
+
 void print_results(const ApssOptions& o, const std::string& stage, const Summary& adapted) {
   const Work work = work_of(adapted);
   fmt::print("adapted bed: {}, {:.0f} stones, {:.0f} pebbles, {:.0f} contacts\n", duration_text(work.seconds),
              work.stones, work.pebbles, work.contacts);
+  fmt::print("  {:.0f} % fewer pebbles than with shapes everywhere\n",
+             100 * (1 - work.pebbles / pebbles_of_all(adapted, work)));
   if (o.reference) {
     const Summary full = run_in(o, "reference", o.overrides);
     const Work all = work_of(full);

@@ -258,7 +258,7 @@ void gather_wall(const Model& model, State& state, const Workspace& work, Index 
   const auto& body = model.walls[w].body;
   Vec3 kept = wall.velocity;
   for (int a = 0; a < 3; ++a)
-    if (body && !wall.held && body->free_shift[static_cast<Index>(a)]) kept[a] = 0;
+    if (!keeps_velocity(model.walls[w], wall, a)) kept[a] = 0;
   Vec3 load = 0.5 * (wall.force + force);
   if (body) load += body->mass * model.gravity;
   if (body && !wall.held) load += wall.applied_force;

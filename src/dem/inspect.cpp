@@ -48,11 +48,12 @@ double kinetic_energy(const Model& model, const State& state, Index i, double& l
   return 0.5 * (c.inertial_mass[i] * v.squaredNorm() + c.inertia[i].dot(w.cwiseAbs2()));
 }
 
-double kinetic_energy(const Model& model, const BodyProperties& body, const WallState& wall, double dt,
+double kinetic_energy(const Model& model, const Wall& properties, const WallState& wall, double dt,
                       double& lost) {
+  const BodyProperties& body = *properties.body;
   Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
   for (int a = 0; a < 3; ++a)
-    if (wall.held || !body.free_shift[static_cast<Index>(a)]) unbalanced[a] = 0;
+    if (keeps_velocity(properties, wall, a)) unbalanced[a] = 0;
   const Vec3 v =
       half_kicked(wall.velocity, unbalanced, Vec3::Constant(body.mass), model.local_damping, 0.5 * dt, lost);
   const Mat3 r = wall.pose.orientation.toRotationMatrix();
@@ -116,7 +117,7 @@ EnergyBalance energy_of(const Model& model, const State& state) {
     e.applied_work += wall.applied_work;
     e.damping_loss += wall.damping_loss;
     if (const auto& body = model.walls[w].body; body && wall.present) {
-      e.kinetic += kinetic_energy(model, *body, wall, state.dt, e.damping_loss);
+      e.kinetic += kinetic_energy(model, model.walls[w], wall, state.dt, e.damping_loss);
       e.potential -= body->mass * model.gravity.dot(wall.pose.position);
     }
   }

@@ -201,12 +201,13 @@ struct Batch {
   return way;
 }
 
-void move_body(const Model& model, const BodyProperties& body, WallState& wall, double kick_time, double dt) {
+void move_body(const Model& model, const Wall& properties, WallState& wall, double kick_time, double dt) {
+  const BodyProperties& body = *properties.body;
   const double alpha = model.local_damping;
   const Vec3 before = wall.velocity, spin_before = wall.angular_velocity;
   Vec3 unbalanced = wall.force + wall.applied_force + body.mass * model.gravity;
   for (int a = 0; a < 3; ++a)
-    if (!body.free_shift[static_cast<Index>(a)]) unbalanced[a] = 0;
+    if (keeps_velocity(properties, wall, a)) unbalanced[a] = 0;
   wall.damping_loss +=
       kick<double>(unbalanced, Vec3::Constant(1.0 / body.mass), alpha, kick_time, wall.velocity);
   wall.applied_work += 0.5 * kick_time * wall.applied_force.dot(before + wall.velocity);
@@ -284,8 +285,8 @@ void move_walls(const Model& model, State& state, Workspace& work, double dt) {
     WallState& wall = state.walls[w];
     if (!wall.present) continue;
     const Quat before = wall.pose.orientation;
-    if (const auto& body = model.walls[w].body; body && !wall.held) {
-      move_body(model, *body, wall, kick_time, dt);
+    if (model.walls[w].body && !wall.held) {
+      move_body(model, model.walls[w], wall, kick_time, dt);
     } else {
       wall.pose.position += dt * wall.velocity;
       const double angle = dt * wall.angular_velocity.norm();

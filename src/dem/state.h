@@ -108,6 +108,12 @@ struct State {
   std::int64_t next_look = 0;  // step after which the state is inspected and the step planned anew
 };
 
+/// Whether a wall or body keeps its velocity along a world axis whatever acts on it: walls, held bodies, and
+/// bodies along their blocked axes.
+inline bool keeps_velocity(const Wall& wall, const WallState& state, int axis) {
+  return !wall.body || state.held || !wall.body->free_shift[static_cast<std::size_t>(axis)];
+}
+
 /// Adds a stone at rest; returns its index. Mass is density x template volume x scale^3.
 int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose);
 

@@ -72,6 +72,8 @@ struct WallInput {
   virtual ~WallInput() = default;
   /// Adds it to the simulation under its name.
   virtual void build(const std::string& name, int material_index, Simulation& sim) const = 0;
+  /// Whether the stones are filled into it.
+  virtual bool is_container() const { return false; }
 };
 
 /// A body with mass, such as the sleeper, chosen by its kind (block, mesh). It is placed by a stage.

@@ -73,9 +73,9 @@ void check_names(const Document& document, const CaseInput& in) {
   std::string container;
   for (const auto& [name, wall] : in.walls) {
     check_plain(document, "walls", name);
-    if (wall.kind != "box") continue;
+    if (!wall.input->is_container()) continue;
     if (!container.empty())
-      document.fail(wall.input->here + ".kind", "there are two boxes, but one container at most",
+      document.fail(wall.input->here + ".kind", "there are two containers, but one at most",
                     fmt::format("{} is the container; make the other walls of planes or a mesh", container));
     container = name;
   }

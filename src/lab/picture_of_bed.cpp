@@ -1,6 +1,7 @@
 #include "lab/picture_of_bed.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "io/picture.h"
@@ -59,6 +60,12 @@ Colour colour_of_share(double share) {
   return {0.9f, 0.8f - 1.2f * (s - 0.5f), 0.25f - 0.2f * (s - 0.5f)};
 }
 
+/// Where two views go: beside each other, or one above the other when the bed is long.
+std::array<Viewport, 2> two_views(const Eigen::AlignedBox3d& box) {
+  if (box.sizes().x() > 3 * box.sizes().z()) return {{{0.01, 0.02, 0.98, 0.47}, {0.01, 0.51, 0.98, 0.47}}};
+  return {{{0.01, 0.02, 0.48, 0.96}, {0.51, 0.02, 0.48, 0.96}}};
+}
+
 }  // namespace
 
 void draw_bed(const Simulation& sim, const std::filesystem::path& png) {
@@ -66,10 +73,10 @@ void draw_bed(const Simulation& sim, const std::filesystem::path& png) {
   const Eigen::AlignedBox3d box = box_of_bed(sim);
   const auto grey = [&](Index i) { return stone_colour(sim.state.clumps.id[i]); };
   Picture picture(1600, 800);
-  picture.look(Vec3(0.35, 1.0, -0.55), box, {0.01, 0.02, 0.48, 0.96});
+  picture.look(Vec3(0.35, 1.0, -0.55), box, two_views(box)[0]);
   draw_stones(sim, surfaces, box.min().y(), grey, picture);
   draw_bodies(sim, picture);
-  picture.look(Vec3(0.0, 1.0, 0.0), box, {0.51, 0.02, 0.48, 0.96});
+  picture.look(Vec3(0.0, 1.0, 0.0), box, two_views(box)[1]);
   draw_stones(sim, surfaces, box.center().y(), grey, picture);
   draw_bodies(sim, picture);
   picture.write_png(png);
@@ -86,10 +93,10 @@ void draw_displacements(const Simulation& sim, const std::vector<Vec3>& moved, s
     return colour_of_share(largest > 0 ? std::min(1.0, moved[i].norm() / largest) : 0.0);
   };
   Picture picture(1600, 800);
-  picture.look(Vec3(0.0, 1.0, 0.0), box, {0.01, 0.02, 0.48, 0.96});
+  picture.look(Vec3(0.0, 1.0, 0.0), box, two_views(box)[0]);
   draw_stones(sim, surfaces, box.center().y(), colour, picture);
   draw_bodies(sim, picture);
-  picture.look(Vec3(0.0, 0.05, -1.0), box, {0.51, 0.02, 0.48, 0.96});
+  picture.look(Vec3(0.0, 0.05, -1.0), box, two_views(box)[1]);
   draw_stones(sim, surfaces, box.min().y(), colour, picture);
   draw_bodies(sim, picture);
   picture.write_png(png);

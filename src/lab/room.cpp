@@ -10,7 +10,8 @@ using Index = std::size_t;
 
 void check_room(const Document& document, const std::string& key, const Simulation& sim) {
   if (sim.container.isEmpty())
-    document.fail(key, "there is no container to fill", "add a wall of kind box, such as [walls.box]");
+    document.fail(key, "there is no container to fill",
+                  "add a wall of kind box, such as [walls.box], or a closed mesh with container = true");
 }
 
 bool is_in_room(const Simulation& sim, const Vec3& point) {
@@ -20,6 +21,7 @@ bool is_in_room(const Simulation& sim, const Vec3& point) {
     const Wall& wall = sim.model.walls[w];
     const Vec3 seen = sim.state.walls[w].pose.to_body(point);
     if (wall.shape.is_plane && seen.z() < 0) return false;
+    if (static_cast<int>(w) == sim.container_mesh && !is_inside(wall.shape, seen)) return false;
     if (wall.body && is_inside(wall.shape, seen)) return false;
   }
   return true;

@@ -31,7 +31,7 @@ void Simulation::drive(std::size_t wall, const Vec3& velocity) {
   WallState& w = state.walls[wall];
   const auto& body = model.walls[wall].body;
   for (int a = 0; a < 3; ++a) {
-    if (body && !w.held && body->free_shift[static_cast<std::size_t>(a)]) continue;
+    if (!keeps_velocity(model.walls[wall], w, a)) continue;
     if (body)
       w.boundary_work += 0.5 * body->mass * (velocity[a] * velocity[a] - w.velocity[a] * w.velocity[a]);
     w.velocity[a] = velocity[a];

@@ -32,7 +32,8 @@ struct Simulation {
   State state;
   Workspace work;
   std::uint64_t seed = 1;
-  Eigen::AlignedBox3d container;  // inside of the container [m]; empty: there is none
+  Eigen::AlignedBox3d container;  // around the inside of the container [m]; empty: there is none
+  int container_mesh = -1;        // the wall whose inside is the container; -1: it is the box
   std::vector<Pose>
       wall_reference;  // where each wall and body stood at the start, or where a stage placed it
   std::string stage;   // name of the one that runs

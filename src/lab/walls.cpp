@@ -44,6 +44,7 @@ struct BoxInput : WallInput {
     sim.container.extend(Vec3(-x, -y, 0));
     sim.container.extend(Vec3(x, y, z));
   }
+  bool is_container() const override { return true; }
 
  private:
   struct Side {
@@ -69,11 +70,17 @@ struct MeshWallInput : WallInput {
   std::filesystem::path file;
   double unit = 1;
   Vec3 at = Vec3::Zero();
+  bool container = false;
 
   void build(const std::string& name, int material_index, Simulation& sim) const override {
-    const TriangleMesh mesh = read_mesh(file, unit);
-    add_wall(sim, {make_mesh_wall(name, mesh), material_index, {}}, {at, Quat::Identity()});
+    TriangleMesh mesh = read_mesh(file, unit);
+    if (container) mesh = make_solid(mesh, file.filename().string()).mesh;
+    const int wall = add_wall(sim, {make_mesh_wall(name, mesh), material_index, {}}, {at, Quat::Identity()});
+    if (!container) return;
+    sim.container_mesh = wall;
+    for (const Vec3& v : mesh.vertices) sim.container.extend(at + v);
   }
+  bool is_container() const override { return container; }
 };
 
 void declare(Fields& f, MeshWallInput& in) {
@@ -82,6 +89,7 @@ void declare(Fields& f, MeshWallInput& in) {
   f.path(required("file"), in.file, "STL, OBJ or PLY; stones touch both sides of a facet");
   f.quantity("unit", in.unit, Dimension::length, {.above = 0}, "length of 1 in the file");
   f.vector("at", in.at, Dimension::length, {}, "where the file's origin stands");
+  f.flag("container", in.container, "stones are filled into it; it must be closed");
 }
 
 void declare_body(Fields& f, BodyInput& in) {

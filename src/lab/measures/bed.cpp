@@ -5,6 +5,7 @@
 #include "dem/touching.h"
 #include "lab/in_touch.h"
 #include "lab/measures/measures.h"
+#include "lab/room.h"
 
 namespace trackbed {
 namespace {
@@ -167,8 +168,12 @@ double pebble_volume(const Simulation& sim) {
 
 double bed_volume(const Simulation& sim) {
   const double height = bed_height(sim);
-  const Eigen::Vector3d size = sim.container.sizes();
-  double volume = size.x() * size.y() * (height - sim.container.min().z());
+  Eigen::AlignedBox3d below = sim.container;
+  below.max().z() = height;
+  if (sim.container_mesh >= 0)
+    return height > below.min().z() ? volume_in(below, [&](const Vec3& x) { return is_in_room(sim, x); })
+                                    : 0.0;
+  double volume = below.sizes().prod();
   for (Index w = 0; w < sim.model.walls.size(); ++w)
     if (sim.model.walls[w].body && sim.state.walls[w].present)
       volume -= volume_below(sim.model.walls[w].shape, sim.state.walls[w].pose, height);

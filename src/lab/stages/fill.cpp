@@ -156,6 +156,9 @@ class Fill : public Stage {
 void FillInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
   if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
   check_room(document, here, sim);
+  if (sim.container_mesh >= 0)
+    document.fail(here + ".kind", "a column of stones cannot fall into a closed container",
+                  "use the stage scatter, which places stones inside");
   const double largest = experiment.stones.grading.sieves.back();
   const double fewest =
       (1.0 - porosity) * sim.container.volume() / (std::numbers::pi / 6.0 * std::pow(largest, 3));
