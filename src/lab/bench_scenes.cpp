@@ -17,8 +17,8 @@
 namespace trackbed {
 namespace {
 
-// Stones are scattered where they will lie: a column of 4.4 m would fall for long. Without friction they come
-// nearly to rest, with it wholly. Two pieces of 2e7 N/m make a contact of 1e7 N/m.
+// Stones are scattered where they will lie: a column of 4.4 m would fall for long. Two pieces of 2e7 N/m make
+// a contact of 1e7 N/m.
 constexpr const char* plain_bed = R"toml(
 title = "Bed at rest in a box of planes"
 [stones]
@@ -41,12 +41,6 @@ material = "stone"
 [[stages]]
 kind = "scatter"
 porosity = 0.4
-[[stages]]
-kind = "settle"
-name = "pack"
-friction = 0
-scaled_step = true
-unbalanced_ratio = 0.03
 [[stages]]
 kind = "settle"
 name = "calm"
@@ -177,12 +171,19 @@ void part_gently(Simulation& sim) {
 
 void need_bed(const BenchScene& scene, const BenchBeds& beds);
 
+/// A kept bed has lost its lid, and may have risen a little since.
+void take_lid_off(Simulation& sim) {
+  if (const int lid = sim.find_wall("lid"); lid >= 0)
+    sim.state.walls[static_cast<std::size_t>(lid)].present = false;
+}
+
 /// The stones of the other scene are replaced by finer ones; then the stage that brought them to rest last is
 /// run once more. The frame of a shape is that of its mesh, whatever fills it, so that poses carry over.
 void take_over_bed(const BenchScene& scene, Experiment& experiment, const BenchBeds& beds) {
   need_bed(*scene.settled_as, beds);
   Simulation& sim = experiment.sim;
   const std::vector<ClumpTemplate> shapes = sim.model.templates;
+  take_lid_off(sim);
   read_kept_bed(kept_bed(*scene.settled_as, beds.folder), sim);
   if (sim.model.templates.size() != shapes.size())
     throw RunError(scene.name + ": the bed it takes over has other shapes");
@@ -236,6 +237,7 @@ std::filesystem::path kept_bed(const BenchScene& scene, const std::filesystem::p
 BenchRun start_bench(const BenchScene& scene, const BenchBeds& beds) {
   need_bed(scene, beds);
   auto [sim, stages] = experiment_of(scene, false);
+  take_lid_off(sim);
   read_kept_bed(kept_bed(scene, beds.folder), sim);
   lay_tiles(sim, scene.tiles_x, scene.tiles_y);
   sim.model.limits.domain.setEmpty();
