@@ -118,7 +118,6 @@ BenchResult time_steps(BenchRun& run, const BenchScene& scene, const BenchOption
 /// The bed of the file in place of that of the scene.
 BenchRun start_from_file(const BenchScene& scene, const fs::path& bed, double side) {
   BenchRun run{read_bed(bed, side, 2630), nullptr};
-  lay_tiles(run.sim, scene.tiles_x, scene.tiles_y);
   run.sim.model.local_damping = 0.7;
   run.sim.model.time_step.fixed = scene.time_step;
   run.sim.number_by_place();

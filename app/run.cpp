@@ -4,13 +4,35 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <array>
+#include <csignal>
 
+#include "base/error.h"
 #include "command_line.h"
 #include "commands.h"
+#include "io/echo.h"
+#include "io/files.h"
 #include "io/progress.h"
 
 namespace trackbed {
 namespace {
+
+volatile std::sig_atomic_t stop_signal = 0;
+
+/// The first signal lets the run leave a checkpoint; a second one ends it at once.
+void stop_on_signals() {
+  for (const int signal : {SIGTERM, SIGINT})
+    std::signal(signal, [](int number) {
+      stop_signal = number;
+      std::signal(number, SIG_DFL);
+    });
+}
+
+/// Ends as the signal would have ended it, so that whoever sent it sees that.
+[[noreturn]] void end_by_signal() {
+  std::signal(stop_signal, SIG_DFL);
+  std::raise(stop_signal);
+  std::abort();  // not reached
+}
 
 /// What most people look for first; those of walls and the rest are in summary.json.
 void print_results(const Summary& summary) {
@@ -39,12 +61,28 @@ void print_results(const Summary& summary) {
     fmt::print("  {:{}}  {:>12.6g} {}\n", r.name, width, r.value, si_unit_of(r.dimension));
 }
 
+double quantity(const std::string& text, Dimension dimension, const char* option) {
+  const auto value = parse_quantity(text, dimension);
+  if (const auto* wrong = std::get_if<std::string>(&value))
+    throw InputError(fmt::format("{} {}: {}", option, text, *wrong));
+  return std::get<double>(value);
+}
+
+/// Whether the folder of the results has those of this very case.
+bool is_finished(const CaseInput& experiment, const RunOptions& options) {
+  const std::filesystem::path file = options.out / "summary.json";
+  if (!std::filesystem::exists(file) || std::filesystem::exists(options.out / "checkpoint")) return false;
+  const auto json = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
+  return json.is_object() && json.contains("input") && json["input"] == echo(experiment);
+}
+
 }  // namespace
 
 int run_command(int argc, char** argv) {
   std::filesystem::path file, out;
   std::vector<std::string> overrides;
   RunOptions options;
+  std::string checkpoint_every = "10 min";
   CLI::App app("Runs a case and writes its results.", "trackbed run");
   app.add_option("case", file, "the case file (TOML)")->required();
   app.add_option("--out", out, "folder of the results; default: out/NAME of the case's folder");
@@ -53,6 +91,14 @@ int run_command(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "number of threads; 0: one for each core")
       ->check(CLI::Range(0, 4096));
+  app.add_flag(
+      "--resume", options.resume,
+      "go on from the last checkpoint in the folder of the results; from the beginning where there is "
+      "none");
+  app.add_option("--checkpoint-every", checkpoint_every,
+                 "wall time between two checkpoints; there is one at each stage's end and when the run is "
+                 "stopped (SIGTERM, SIGINT)")
+      ->capture_default_str();
   app.add_flag("--quiet", options.quiet, "print nothing but errors");
   if (const auto code = parse(app, argc, argv)) return *code;
 
@@ -63,7 +109,20 @@ int run_command(int argc, char** argv) {
                     ? std::filesystem::path("out") / std::filesystem::absolute(file).parent_path().filename()
                     : out;
   options.progress = stderr;
-  const Summary summary = run(document, experiment, options);
+  options.checkpoint_every = quantity(checkpoint_every, Dimension::time, "--checkpoint-every");
+  options.stop = [] { return stop_signal != 0; };
+  if (options.resume && is_finished(experiment, options)) {
+    fmt::print("{} holds the results of this case already\n", options.out.string());
+    return 0;
+  }
+  stop_on_signals();
+  Summary summary;
+  try {
+    summary = run(document, experiment, options);
+  } catch (const Stopped& stopped) {
+    fmt::print(stderr, "trackbed: {}\n", stopped.what());
+    end_by_signal();
+  }
   if (options.quiet) return 0;
   fmt::print("{}: {} stages in {}\n", experiment.title, summary.stages.size(), duration_text(summary.wall));
   print_results(summary);

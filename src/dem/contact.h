@@ -18,6 +18,10 @@ struct ContactMemoryOf {
   alignas(32) Vec3Of<Real> rolling = Vec3Of<Real>::Zero();  // rolling moment on body 2 [N m]
 
   auto touches() const { return overlap > Real(0.0); }
+  template <class A>
+  void archive(A& a) {
+    a(normal, overlap, shear, rolling);
+  }
 };
 using ContactMemory = ContactMemoryOf<double>;
 
@@ -42,6 +46,10 @@ struct LossesOf {
   Real rolling = 0.0;
   Real dashpot = 0.0;
 
+  template <class A>
+  void archive(A& a) {
+    a(friction, rolling, dashpot);
+  }
   LossesOf& operator+=(const LossesOf& other) {
     friction += other.friction;
     rolling += other.rolling;

@@ -22,6 +22,11 @@ struct EnergyBalance {
   double damping_loss = 0;
   double boundary_work = 0;  // that moved walls did on the stones since the start
   double applied_work = 0;   // that applied forces did on bodies since the start
+  template <class A>
+  void archive(A& a) {
+    a(kinetic, potential, strain, friction_loss, rolling_loss, dashpot_loss, damping_loss, boundary_work,
+      applied_work);
+  }
 
   /// Constant in time when the balance closes.
   double total() const {

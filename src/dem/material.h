@@ -28,6 +28,10 @@ struct Dashpot {
   double normal = 0;  // [-]
   double shear = 0;   // [-]
   DashpotMode mode = DashpotMode::full;
+  template <class A>
+  void archive(A& a) {
+    a(normal, shear, mode);
+  }
 };
 
 /// What the law needs to know of a material pair.
@@ -38,6 +42,10 @@ struct ContactProperties {
   double friction = 0;          // [-]
   double rolling_friction = 0;  // [-]
   Dashpot dashpot;
+  template <class A>
+  void archive(A& a) {
+    a(law, kn, ks, friction, rolling_friction, dashpot);
+  }
 };
 
 /// How piece properties make contact properties.
@@ -68,6 +76,11 @@ class PairTable {
 
   /// Largest normal or shear stiffness a piece of this material can meet [N/m].
   double stiffest(int material) const;
+
+  template <class A>
+  void archive(A& a) {
+    a(n_, table_);
+  }
 
  private:
   int n_ = 0;

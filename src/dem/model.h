@@ -35,7 +35,6 @@ struct TimeStepRule {
   double largest_growth = 1.05;  // per step
   double largest_travel = 0.02;  // of the smallest pebble's radius, per step: no contact is jumped into
   std::optional<double> fixed;   // user's choice [s]; refused when above the stable one
-  double scaled_share = 0;       // of the stones get more inertia for a longer step; 0: none
   int shortest_interval = 20;    // steps between two looks
   int longest_interval = 100;    // in a bed at rest
 };
@@ -45,8 +44,11 @@ struct Limits {
   double overlap = 0.25;  // of the smaller stone's equal-volume radius
   double through =
       0.8;  // of a pebble's radius, into a mesh: past its centre it would come out on the other side
-  double speed = 100;          // of any stone [m/s]
-  Eigen::AlignedBox3d domain;  // no stone's centre leaves it; empty: anywhere
+  double speed = 100;  // of any stone [m/s]
+  template <class A>
+  void archive(A& a) {
+    a(overlap, through, speed);
+  }
 };
 
 /// Speed settings of the contact search; they change no result.
@@ -55,15 +57,25 @@ struct SearchRule {
   double margin = 0;  // stones nearer than this are pairs [m]; 0: chosen from the stones
 };
 
-struct Model {
-  std::vector<Material> materials;
-  PairTable pairs;
-  std::vector<ClumpTemplate> templates;
-  std::vector<Wall> walls;
+/// What a stage of an experiment may change while it lasts.
+struct Conditions {
   Vec3 gravity{0, 0, -9.81};   // [m/s^2]
   double local_damping = 0.7;  // Cundall's coefficient, stones and bodies [-]
-  TimeStepRule time_step;
+  PairTable pairs;
   Limits limits;
+  double scaled_share = 0;  // of the stones get more inertia for a longer time step (timestep.h); 0: none
+  template <class A>
+  void archive(A& a) {
+    a(gravity, local_damping, pairs, limits, scaled_share);
+  }
+};
+
+struct Model : Conditions {
+  std::vector<Material> materials;
+  std::vector<ClumpTemplate> templates;
+  std::vector<Wall> walls;
+  Eigen::AlignedBox3d domain;  // no stone's centre leaves it; empty: anywhere
+  TimeStepRule time_step;
   SearchRule search;
 };
 

@@ -1,4 +1,5 @@
-// All that changes, and nothing that can be worked out again: what a checkpoint holds.
+// All that changes, and nothing that can be worked out again: what a checkpoint holds. Each part tells its
+// members once for being written and read back (base/archive.h).
 //
 // Conventions: SI, world axes. Positions, orientations, forces and moments belong to time t; velocities and
 // angular momenta to t - dt/2 (leapfrog), until the first step, when they are those of the start.
@@ -16,6 +17,10 @@ namespace trackbed {
 /// Energy each stone has turned into heat since the start [J]; a contact's loss is booked on its body 1.
 struct StoneLosses : Losses {
   double damping = 0;
+  template <class A>
+  void archive(A& a) {
+    a(friction, rolling, dashpot, damping);
+  }
 };
 
 /// The stones, one entry a clump in each array.
@@ -38,6 +43,11 @@ struct Clumps {
   std::vector<StoneLosses> losses;
 
   int size() const { return static_cast<int>(id.size()); }
+  template <class A>
+  void archive(A& a) {
+    a(next_id, id, shape, material, scale, mass, inertial_mass, inertia, position, orientation, velocity,
+      angular_momentum, angular_velocity, force, moment, losses);
+  }
 };
 
 /// Motion and reaction of a wall or body; for a body the frame's origin is its centre of mass.
@@ -55,17 +65,31 @@ struct WallState {
   double applied_work = 0;               // of the applied force and moment on a body [J]
   double boundary_work = 0;              // that a moved wall did on the stones [J]
   double damping_loss = 0;               // bodies [J]
+
+  template <class A>
+  void archive(A& a) {
+    a(present, held, pose, velocity, angular_velocity, angular_momentum, force, moment, applied_force,
+      applied_moment, applied_work, boundary_work, damping_loss);
+  }
 };
 
 /// Two pebbles of a clump pair, by their place in the templates.
 struct PebblePair {
   std::int32_t a, b;
+  template <class A>
+  void archive(A& archive) {
+    archive(a, b);
+  }
 };
 
 /// Clumps i < j that lie near each other; their candidates are [first, first + count) of the block.
 struct ClumpPair {
   int i, j;
   int first, count;
+  template <class A>
+  void archive(A& a) {
+    a(i, j, first, count);
+  }
 };
 
 /// Consecutive clump pairs that one thread works on at a time, all pairs of one i in the same block.
@@ -76,17 +100,29 @@ struct PairBlock {
   std::vector<ClumpPair> pairs;
   std::vector<PebblePair> keys;
   std::vector<ContactMemory> memory;
+  template <class A>
+  void archive(A& a) {
+    a(pairs, keys, memory);
+  }
 };
 
 /// The places where one pebble touches one wall.
 struct WallMemory {
   std::array<ContactMemory, max_wall_points> points;
+  template <class A>
+  void archive(A& a) {
+    a(points);
+  }
 };
 
 /// A clump near a wall; candidates are pebbles.
 struct WallPair {
   int clump, wall;
   int first, count;
+  template <class A>
+  void archive(A& a) {
+    a(clump, wall, first, count);
+  }
 };
 
 struct WallBlock {
@@ -94,6 +130,10 @@ struct WallBlock {
   std::vector<WallPair> pairs;
   std::vector<std::int32_t> keys;  // pebble
   std::vector<WallMemory> memory;
+  template <class A>
+  void archive(A& a) {
+    a(pairs, keys, memory);
+  }
 };
 
 struct State {
@@ -106,6 +146,11 @@ struct State {
   double planned_dt = 0;               // of the next [s]; 0: to be found
   std::int64_t step = 0;
   std::int64_t next_look = 0;  // step after which the state is inspected and the step planned anew
+
+  template <class A>
+  void archive(A& a) {
+    a(clumps, walls, pair_blocks, wall_blocks, time, dt, planned_dt, step, next_look);
+  }
 };
 
 /// Whether a wall or body keeps its velocity along a world axis whatever acts on it: walls, held bodies, and

@@ -7,6 +7,7 @@
 #include "dem/motion.h"
 #include "dem/search.h"
 #include "dem/timestep.h"
+#include "dem/touching.h"
 
 namespace trackbed {
 namespace {
@@ -26,7 +27,7 @@ class Stopwatch {
 
 void look(const Model& model, State& state, const Workspace& work) {
   inspect(model, state, work);
-  if (model.time_step.scaled_share > 0) scale_step(model, state, work);
+  if (model.scaled_share > 0) scale_step(model, state, work);
   const StepPlan plan = plan_steps(model, state, work);
   state.planned_dt = plan.dt;
   state.next_look = state.step + plan.steps;
@@ -44,14 +45,19 @@ void settle_contacts(const Model& model, State& state, Workspace& work) {
   look(model, state, work);
 }
 
+void find_contacts(const Model& model, State& state, Workspace& work) {
+  work = {};
+  prepare(model, state, work);
+  rebuild_pairs(model, state, work);
+  visit_touching(model, state, [&](const Touching&) { ++work.touching; });
+}
+
 void step(const Model& model, State& state, Workspace& work) {
   Stopwatch watch;
   if (state.planned_dt == 0) {
     settle_contacts(model, state, work);
   } else if (!work.pairs_are_valid) {
-    // The workspace was thrown away: the state knows the forces, only the search is to be made anew.
-    prepare(model, state, work);
-    rebuild_pairs(model, state, work);
+    find_contacts(model, state, work);  // the workspace was thrown away
   }
   watch.add_to(work.profile.search);
   const double dt = state.planned_dt;

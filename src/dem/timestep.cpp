@@ -211,15 +211,14 @@ void scale_step(const Model& model, State& state, const Workspace& work) {
     own[k] = limit_of_clump(model, state, work, k) * std::sqrt(c.mass[k] / c.inertial_mass[k]);
   }
   std::vector<double> sorted = own;
-  const auto common = sorted.begin() + static_cast<std::ptrdiff_t>(model.time_step.scaled_share *
+  const auto common = sorted.begin() + static_cast<std::ptrdiff_t>(model.scaled_share *
                                                                    static_cast<double>(sorted.size() - 1));
   std::nth_element(sorted.begin(), common, sorted.end());
   constexpr double most =
       2;  // a contact that opens and closes must not make a stone heavy and light by turns
   for (Index k = 0; k < own.size(); ++k) {
     const double now = c.inertial_mass[k] / c.mass[k];
-    const double wanted =
-        model.time_step.scaled_share > 0 ? std::max(1.0, std::pow(*common / own[k], 2)) : 1.0;
+    const double wanted = model.scaled_share > 0 ? std::max(1.0, std::pow(*common / own[k], 2)) : 1.0;
     if (wanted != now) scale_inertia(state, static_cast<int>(k), std::clamp(wanted / now, 1.0 / most, most));
   }
 }

@@ -43,7 +43,7 @@ struct StepPlan {
 StableStep stable_step(const Model& model, const State& state, const Workspace& work);
 
 /// Differential density scaling: raises the inertia, not the weight, of stones whose own stable step is
-/// shorter than that of the share TimeStepRule::scaled_share of all stones, until it is that. For the way to
+/// shorter than that of the share Conditions::scaled_share of all stones, until it is that. For the way to
 /// rest only: time and speeds mean nothing while it lasts.
 void scale_step(const Model& model, State& state, const Workspace& work);
 

@@ -1,5 +1,12 @@
 #include "io/echo.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
 namespace trackbed {
 namespace {
 
@@ -60,12 +67,47 @@ class Echoer : public Fields {
   }
 };
 
+void flatten(const ordered_json& json, const std::string& path, std::map<std::string, std::string>& all) {
+  if (json.is_object() || (json.is_array() && !json.empty() && json[0].is_object())) {
+    std::size_t k = 0;
+    for (const auto& [key, value] : json.items()) {
+      std::string part = json.is_array() ? std::to_string(k) : key;
+      if (json.is_array() && value.contains("name")) part = value["name"].get<std::string>();
+      flatten(value, path.empty() ? part : path + "." + part, all);
+      ++k;
+    }
+    return;
+  }
+  all[path] = json.is_string() ? json.get<std::string>() : json.dump();
+}
+
 }  // namespace
 
 ordered_json echo_with(const std::function<void(Fields&)>& declare_all) {
   Echoer echoer;
   declare_all(echoer);
   return std::move(echoer.json);
+}
+
+std::string difference(const ordered_json& before, const ordered_json& after) {
+  std::map<std::string, std::string> old_values, new_values;
+  flatten(before, "", old_values);
+  flatten(after, "", new_values);
+  std::vector<std::string> changes;
+  for (const auto& [key, value] : new_values) {
+    const auto old = old_values.find(key);
+    if (old == old_values.end())
+      changes.push_back(fmt::format("{}: new", key));
+    else if (old->second != value)
+      changes.push_back(fmt::format("{}: {} -> {}", key, old->second, value));
+  }
+  for (const auto& [key, value] : old_values)
+    if (!new_values.contains(key)) changes.push_back(fmt::format("{}: gone", key));
+  constexpr std::size_t most = 3;
+  const std::size_t all = changes.size();
+  if (all > most) changes.resize(most);
+  return fmt::format("{}{}", fmt::join(changes, ", "),
+                     all > most ? fmt::format(" and {} more", all - most) : "");
 }
 
 }  // namespace trackbed

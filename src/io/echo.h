@@ -15,4 +15,7 @@ nlohmann::ordered_json echo(T input) {
   return echo_with([&](Fields& f) { declare(f, input); });
 }
 
+/// The keys in which two resolved inputs differ, "stones.ratio: 0.3 -> 0.4"; the first few.
+std::string difference(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
+
 }  // namespace trackbed

@@ -33,7 +33,19 @@ std::string read_file(const fs::path& path, std::size_t limit) {
   return bytes;
 }
 
-void write_file(const fs::path& path, std::string_view bytes) {
+namespace {
+
+/// Makes names in a folder last; some file systems cannot, and need not.
+void sync_folder(const fs::path& folder) {
+  const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file < 0) return;
+  ::fsync(file);
+  ::close(file);
+}
+
+}  // namespace
+
+void write_file(const fs::path& path, std::string_view bytes, Lasting lasting) {
   const fs::path draft = path.string() + fmt::format(".{}.part", ::getpid());
   const auto fail = [&](const char* what) {
     const int cause = errno;
@@ -53,8 +65,10 @@ void write_file(const fs::path& path, std::string_view bytes) {
     }
     rest.remove_prefix(static_cast<std::size_t>(written));
   }
-  if (::close(file) != 0) fail("cannot be written");
+  const bool is_safe = lasting == Lasting::in_memory || ::fsync(file) == 0;
+  if (::close(file) != 0 || !is_safe) fail("cannot be written");
   if (::rename(draft.c_str(), path.c_str()) != 0) fail("cannot be put in place");
+  if (lasting == Lasting::on_disk) sync_folder(path.parent_path());
 }
 
 void make_folder(const fs::path& path) {

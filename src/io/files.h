@@ -11,8 +11,12 @@ namespace trackbed {
 /// The bytes of a file. Throws InputError when it cannot be read or is larger than `limit` [bytes].
 std::string read_file(const std::filesystem::path& path, std::size_t limit = std::size_t{1} << 40);
 
+/// Whether a file must survive the loss of power once it is written.
+enum class Lasting { in_memory, on_disk };
+
 /// Writes beside `path` and renames: `path` holds the old text or the new, never a part. Throws RunError.
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Lasting lasting = Lasting::in_memory);
 
 /// Makes a folder and those above it. Throws RunError.
 void make_folder(const std::filesystem::path& path);

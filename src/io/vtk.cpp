@@ -220,11 +220,6 @@ void write_vtp(const std::filesystem::path& path, const PolyData& data) {
   write_file(path, xml);
 }
 
-TimeSeries::TimeSeries(std::filesystem::path path, std::vector<Entry> entries)
-    : path_(std::move(path)), entries_(std::move(entries)) {
-  write();
-}
-
 void TimeSeries::add(double time, const std::filesystem::path& file, int part) {
   entries_.push_back({time, file.lexically_proximate(path_.parent_path()).generic_string(), part});
   write();

@@ -70,15 +70,24 @@ class TimeSeries {
     double time;       // [s]
     std::string file;  // relative to the folder of the .pvd
     int part;          // files of one time are parts of one picture
+    template <class A>
+    void archive(A& a) {
+      a(time, file, part);
+    }
   };
 
-  /// `entries`: those of the run so far, when it is resumed.
-  explicit TimeSeries(std::filesystem::path path, std::vector<Entry> entries = {});
+  explicit TimeSeries(std::filesystem::path path) : path_(std::move(path)) {}
 
   /// `file` must lie in the folder of the .pvd or below. Throws RunError when the .pvd cannot be written.
   void add(double time, const std::filesystem::path& file, int part = 0);
 
   const std::vector<Entry>& entries() const { return entries_; }
+
+  /// The entries so far; the file itself is written anew with the next one.
+  template <class A>
+  void archive(A& a) {
+    a(entries_);
+  }
 
  private:
   void write() const;

@@ -17,12 +17,15 @@
 namespace trackbed {
 namespace {
 
-// Stones are scattered where they will lie: a column of 4.4 m would fall for long. Two pieces of 2e7 N/m make
-// a contact of 1e7 N/m.
+// Stones are scattered, as balls, a little above where they will lie: a column of 4.4 m would fall for long,
+// and clumps part slowly. Two pieces of 2e7 N/m make a contact of 1e7 N/m.
 constexpr const char* plain_bed = R"toml(
 title = "Bed at rest in a box of planes"
 [stones]
 shapes = 1
+material = "stone"
+[stones.sets.balls]
+fidelity = "stand_in"
 material = "stone"
 [materials.stone]
 kn = "2e7 N/m"
@@ -40,7 +43,10 @@ normal = [0, 0, -1]
 material = "stone"
 [[stages]]
 kind = "scatter"
-porosity = 0.4
+set = "balls"
+porosity = 0.5
+[[stages]]
+kind = "replace"
 [[stages]]
 kind = "settle"
 name = "calm"
@@ -58,15 +64,17 @@ duration = "1e9 s"
 
 constexpr const char* one_size = "stones.grading.sieves=[\"45 mm\", \"45.000001 mm\"]";
 
-/// Stones in a box with a square floor of the given side that they would fill to the given height at a
-/// porosity of 0.4 [m].
-BenchScene plain(const std::string& name, const std::string& about, double side, double height,
-                 const std::vector<std::string>& stones) {
+/// So many stones in a box with a square floor of the given side [m], scattered at the given porosity;
+/// `volume`: of all [m^3].
+BenchScene plain(const std::string& name, const std::string& about, double side, double porosity,
+                 double volume, const std::vector<std::string>& stones) {
+  const double height = volume / (1 - porosity) / (side * side);
   BenchScene scene;
   scene.name = scene.bed = name;
   scene.about = about;
   scene.text = plain_bed;
   scene.overrides = stones;
+  scene.overrides.push_back(fmt::format("stages.scatter.porosity={}", porosity));
   // The sides are higher than the lid: what rises a little when it is taken away has not left the box.
   scene.overrides.push_back(
       fmt::format("walls.box.size=[\"{0} m\", \"{0} m\", \"{1} m\"]", side, 1.3 * height));
@@ -76,15 +84,6 @@ BenchScene plain(const std::string& name, const std::string& about, double side,
   return scene;
 }
 
-BenchScene tiled(BenchScene bed, const std::string& name, const std::string& about, int nx, int ny) {
-  bed.name = name;
-  bed.about = about;
-  bed.tiles_x = nx;
-  bed.tiles_y = ny;
-  return bed;
-}
-
-/// The experiment of cases/cyclic-box with other stones; timed is its stage `cyclic`.
 BenchScene cyclic_box(const std::string& name, const std::string& pebbles,
                       const std::vector<std::string>& stones) {
   BenchScene scene;
@@ -111,28 +110,30 @@ std::vector<std::string> filled(std::string_view distance, double ratio) {
 std::vector<BenchScene> make_scenes() {
   const std::vector<std::string> balls{"stones.fidelity=ball",
                                        "stones.grading.sieves=[\"22 mm\", \"62 mm\"]"};
-  const auto stones = [](std::string_view distance, double ratio) {
+  // 20,000 balls of this grading are 0.9518 m^3, a stone of 45 mm 4.771e-5 m^3. Balls part quickly in a dense
+  // bed, clumps do not.
+  const auto n_balls = [&](const std::string& name, const std::string& about, double thousands, double side) {
+    return plain(name, about, side, 0.4, thousands / 20 * 0.9518, balls);
+  };
+  const auto n_clumps = [](const std::string& name, const std::string& about, int n, double side,
+                           std::string_view distance, double ratio) {
     std::vector<std::string> all = filled(distance, ratio);
     all.emplace_back(one_size);
-    return all;
+    return plain(name, about, side, 0.5, n * 4.771e-5, all);
   };
-  const BenchScene w1 =
-      plain("w1", "20,000 balls, radius 11 to 31 mm, in a box of 0.6 m", 0.6, 4.4064, balls);
-  const BenchScene tile = plain("section", "", 0.6, 0.4418, stones("115", 0.35));
   const BenchScene box_270 = cyclic_box("box-270", "about 270 pebbles", filled("154", 0.3));
-  return {
-      w1,
-      plain("w2", "2,000 clumps of 20 pebbles, 45 mm, in a box of 0.6 m", 0.6, 0.4418, stones("100", 0.35)),
-      plain("w2b", "500 clumps of 250 pebbles, 45 mm, in a box of 0.3 m", 0.3, 0.4418, stones("157", 0.3)),
-      tiled(tile, "section", "24,000 clumps of 26 pebbles: 12 beds of 2,000 side by side", 4, 3),
-      tiled(w1, "balls-100k", "100,000 balls: w1 5 times side by side", 5, 1),
-      tiled(w1, "balls-500k", "500,000 balls: w1 25 times side by side", 5, 5),
-      cyclic_box("box-1", "1 pebble", {"stones.fidelity=ball"}),
-      cyclic_box("box-20", "20 pebbles", filled("105", 0.4)),
-      cyclic_box("box-70", "about 70 pebbles", filled("128", 0.3)),
-      box_270,
-      in_the_bed_of(box_270, cyclic_box("box-1000", "about 1,000 pebbles", filled("167.5", 0.3))),
-      in_the_bed_of(box_270, cyclic_box("box-5000", "about 5,000 pebbles", filled("174", 0.3)))};
+  return {n_balls("w1", "20,000 balls, radius 11 to 31 mm, in a box of 0.6 m", 20, 0.6),
+          n_clumps("w2", "2,000 clumps of 20 pebbles, 45 mm, in a box of 0.6 m", 2000, 0.6, "100", 0.35),
+          n_clumps("w2b", "500 clumps of 250 pebbles, 45 mm, in a box of 0.3 m", 500, 0.3, "157", 0.3),
+          n_clumps("section", "24,000 clumps of 26 pebbles, 45 mm, 0.45 m deep", 24000, 2.08, "115", 0.35),
+          n_balls("balls-100k", "100,000 balls as in w1, 4.4 m deep", 100, 1.342),
+          n_balls("balls-500k", "500,000 balls as in w1, 4.4 m deep", 500, 3.0),
+          cyclic_box("box-1", "1 pebble", {"stones.fidelity=ball"}),
+          cyclic_box("box-20", "20 pebbles", filled("105", 0.4)),
+          cyclic_box("box-70", "about 70 pebbles", filled("128", 0.3)),
+          box_270,
+          in_the_bed_of(box_270, cyclic_box("box-1000", "about 1,000 pebbles", filled("167.5", 0.3))),
+          in_the_bed_of(box_270, cyclic_box("box-5000", "about 5,000 pebbles", filled("174", 0.3)))};
 }
 
 /// The experiment of a scene, with and without its stones' shapes, which may take minutes to fill.
@@ -152,13 +153,7 @@ Experiment experiment_of(const BenchScene& scene, bool with_shapes) {
 
 void run_stage(NamedStage& named, Simulation& sim, const BenchBeds& beds) {
   beds.tell(named.name);
-  named.stage->open(sim);
-  sim.number_by_place();
-  while (!named.stage->finished(sim)) {
-    named.stage->control(sim);
-    sim.step();
-  }
-  named.stage->close(sim);
+  carry_out(sim, *named.stage);
 }
 
 /// Finer stones have corners that lie in their neighbours. Local damping near 1 takes nearly all that such
@@ -171,24 +166,19 @@ void part_gently(Simulation& sim) {
 
 void need_bed(const BenchScene& scene, const BenchBeds& beds);
 
-/// A kept bed has lost its lid, and may have risen a little since.
-void take_lid_off(Simulation& sim) {
-  if (const int lid = sim.find_wall("lid"); lid >= 0)
-    sim.state.walls[static_cast<std::size_t>(lid)].present = false;
-}
-
 /// The stones of the other scene are replaced by finer ones; then the stage that brought them to rest last is
 /// run once more. The frame of a shape is that of its mesh, whatever fills it, so that poses carry over.
 void take_over_bed(const BenchScene& scene, Experiment& experiment, const BenchBeds& beds) {
   need_bed(*scene.settled_as, beds);
   Simulation& sim = experiment.sim;
   const std::vector<ClumpTemplate> shapes = sim.model.templates;
-  take_lid_off(sim);
   read_kept_bed(kept_bed(*scene.settled_as, beds.folder), sim);
   if (sim.model.templates.size() != shapes.size())
     throw RunError(scene.name + ": the bed it takes over has other shapes");
   sim.model.templates = shapes;
-  sim.model.limits.domain.setEmpty();  // stones lie above the rim of the box
+  sim.state.pair_blocks.clear();  // contacts of pebbles that are no more
+  sim.state.wall_blocks.clear();
+  sim.model.domain.setEmpty();  // stones lie above the rim of the box
   sim.changed();
   part_gently(sim);
   run_stage(experiment.stages[experiment.stages.size() - 2], sim, beds);
@@ -237,41 +227,12 @@ std::filesystem::path kept_bed(const BenchScene& scene, const std::filesystem::p
 BenchRun start_bench(const BenchScene& scene, const BenchBeds& beds) {
   need_bed(scene, beds);
   auto [sim, stages] = experiment_of(scene, false);
-  take_lid_off(sim);
   read_kept_bed(kept_bed(scene, beds.folder), sim);
-  lay_tiles(sim, scene.tiles_x, scene.tiles_y);
-  sim.model.limits.domain.setEmpty();
+  sim.model.domain.setEmpty();
   if (scene.time_step > 0) sim.model.time_step.fixed = scene.time_step;
   sim.number_by_place();
   stages.back().stage->open(sim);
   return {std::move(sim), std::move(stages.back().stage)};
-}
-
-void lay_tiles(Simulation& sim, int nx, int ny) {
-  // Distance between the walls that face along an axis.
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  const auto facing = [&](std::size_t w) {
-    return Vec3(sim.state.walls[w].pose.orientation * Vec3::UnitZ());
-  };
-  for (std::size_t w = 0; w < sim.state.walls.size(); ++w)
-    for (int axis = 0; axis < 2; ++axis) {
-      if (std::abs(facing(w)[axis]) < 0.9) continue;
-      low[axis] = std::min(low[axis], sim.state.walls[w].pose.position[axis]);
-      high[axis] = std::max(high[axis], sim.state.walls[w].pose.position[axis]);
-    }
-  const Clumps tile = sim.state.clumps;
-  for (int y = 0; y < ny; ++y)
-    for (int x = 0; x < nx; ++x) {
-      if (x == 0 && y == 0) continue;
-      const Vec3 shift(x * (high.x() - low.x()), y * (high.y() - low.y()), 0);
-      for (std::size_t k = 0; k < tile.id.size(); ++k)
-        add_clump(sim.model, sim.state, tile.shape[k], tile.scale[k], tile.material[k],
-                  {tile.position[k] + shift, tile.orientation[k]});
-    }
-  const Vec3 further((nx - 1) * (high.x() - low.x()), (ny - 1) * (high.y() - low.y()), 0);
-  for (std::size_t w = 0; w < sim.state.walls.size(); ++w)
-    for (int axis = 0; axis < 2; ++axis)
-      if (facing(w)[axis] < -0.9) sim.state.walls[w].pose.position[axis] += further[axis];
 }
 
 }  // namespace trackbed

@@ -21,11 +21,10 @@ struct BenchScene {
   std::vector<std::string> overrides;  // of its values
   std::string bed;                     // scenes with the same name here start from the same kept bed
   std::shared_ptr<const BenchScene> settled_as;  // whose bed finer stones of the same shapes take over
-  double side = 0;               // of the square floor, for beds that come in a file of spheres [m]
-  int tiles_x = 1, tiles_y = 1;  // beds laid side by side
-  double time_step = 0;          // [s]; 0: automatic
-  int warm = 600;                // steps before timing: contacts find their shear forces again
-  int steps = 0;                 // of a timed block; 0: about a second
+  double side = 0;       // of the square floor, for beds that come in a file of spheres [m]
+  double time_step = 0;  // [s]; 0: automatic
+  int warm = 600;        // steps before timing: contacts find their shear forces again
+  int steps = 0;         // of a timed block; 0: about a second
 };
 
 const std::vector<BenchScene>& bench_scenes();
@@ -53,12 +52,7 @@ struct BenchBeds {
 /// The file in which the bed of a scene is kept: its name changes with the recipe.
 std::filesystem::path kept_bed(const BenchScene& scene, const std::filesystem::path& folder);
 
-/// Makes the bed if none is kept, reads it, lays its tiles and makes the last stage ready.
+/// Makes the bed if none is kept, reads it and makes the last stage ready.
 BenchRun start_bench(const BenchScene& scene, const BenchBeds& beds);
-
-/// Repeats a bed in a box of planes nx times along x and ny times along y, and sets the walls at the far ends
-/// that much further. No stone reaches farther into a wall than its overlap, so beside its like it touches
-/// the neighbours' stones but lightly.
-void lay_tiles(Simulation& sim, int nx, int ny);
 
 }  // namespace trackbed

@@ -186,7 +186,7 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
   m.search.margin = in.numerics.margin.value_or(0);
   m.limits.overlap = in.numerics.overlap_limit;
   m.limits.speed = in.numerics.speed_limit;
-  if (!sim.container.isEmpty()) m.limits.domain = sim.container;
+  if (!sim.container.isEmpty()) m.domain = sim.container;
   check_time_step(document, in, sim);
   check_stages(document, in, sim);
   sim.changed();

@@ -22,6 +22,11 @@ class Paraview {
   /// when no time has passed (a stage that places things).
   void add_frame(const Simulation& sim, const StonePlaces& before);
 
+  template <class A>
+  void archive(A& a) {
+    a(stone_series_, contact_series_, wall_series_, frame_, time_);
+  }
+
  private:
   void add(TimeSeries& series, const char* name, const PolyData& data, bool is_new);
 

@@ -76,11 +76,20 @@ Recorder::Recorder(const Simulation& sim, RecordInput record, fs::path folder)
     : record_(std::move(record)),
       folder_(std::move(folder)),
       measures_(series_measures(sim, record_.measures)),
-      series_(folder_ / "series.csv", series_columns(measures_)),
       paraview_(sim.model, folder_ / "paraview", record_.paraview_stones),
       row_due_(next_after(sim.state.time, record_.every)),
       frame_due_(record_.paraview_every ? next_after(sim.state.time, *record_.paraview_every)
                                         : std::numeric_limits<double>::infinity()) {}
+
+void Recorder::begin() {
+  series_.emplace(folder_ / "series.csv", series_columns(measures_));
+}
+
+void Recorder::archive(Archive& a) {
+  std::uint64_t rows = series_ ? series_->rows() : 0;
+  a(rows, paraview_, places_, row_due_, frame_due_, row_step_, row_stage_);
+  if (a.reads()) series_ = CsvWriter::resume(folder_ / "series.csv", series_columns(measures_), rows);
+}
 
 void Recorder::open_stage(const Simulation& sim) {
   places_ = places_of(sim.state);
@@ -109,7 +118,7 @@ void Recorder::close_stage(const Simulation& sim) {
 void Recorder::add_row(const Simulation& sim) {
   std::vector<Cell> row{sim.state.time, std::string_view(sim.stage), double(sim.state.step), sim.state.dt};
   for (const Measure& m : measures_) row.emplace_back(m.value(sim));
-  series_.add_row(row);
+  series_->add_row(row);
   row_step_ = sim.state.step;
   row_stage_ = sim.stage;
 }

@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "io/csv.h"
 #include "lab/case.h"
 #include "lab/measure.h"
@@ -37,6 +38,11 @@ class Recorder {
  public:
   Recorder(const Simulation& sim, RecordInput record, std::filesystem::path folder);
 
+  /// Begins the files of a new run.
+  void begin();
+  /// Where the files stand; those of a run that is taken up again lose what was written after that.
+  void archive(Archive& a);
+
   /// To be called after a stage was opened: displacements of stones are counted from here.
   void open_stage(const Simulation& sim);
   /// After each step: writes what is due.
@@ -56,7 +62,7 @@ class Recorder {
   RecordInput record_;
   std::filesystem::path folder_;
   std::vector<Measure> measures_;
-  CsvWriter series_;
+  std::optional<CsvWriter> series_;
   Paraview paraview_;
   StonePlaces places_;          // of the stones when the stage was opened
   double row_due_, frame_due_;  // [s]

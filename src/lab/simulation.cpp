@@ -42,16 +42,17 @@ void Simulation::stop_stones() {
   for (int c = 0; c < state.clumps.size(); ++c) set_motion(state, c, Vec3::Zero(), Vec3::Zero());
 }
 
-void Simulation::scale_step(bool scaled) {
-  constexpr double share = 0.5;
-  model.time_step.scaled_share = scaled ? share : 0.0;
-  if (scaled) return;
+void Simulation::restore(const Conditions& before) {
+  const bool was_scaled = model.scaled_share > 0;
+  static_cast<Conditions&>(model) = before;
+  if (!was_scaled || model.scaled_share > 0) return;
   stop_stones();
   const Clumps& c = state.clumps;
   for (int k = 0; k < c.size(); ++k) {
     const auto i = static_cast<std::size_t>(k);
     if (c.inertial_mass[i] != c.mass[i]) unscale_inertia(model, state, k);
   }
+  changed();
 }
 
 int add_wall(Simulation& sim, Wall wall, const Pose& pose) {

@@ -53,9 +53,11 @@ struct Simulation {
   /// Takes all speed from the stones.
   void stop_stones();
 
-  /// Begins or ends the scaling of inertia for a longer time step (dem/timestep.h); the end brings all to a
-  /// halt.
-  void scale_step(bool scaled);
+  /// Gives stones the inertia that a longer time step needs (dem/timestep.h), until restore().
+  void scale_step() { model.scaled_share = 0.5; }
+
+  /// Brings back the conditions of before a stage; all come to a halt when that ends a scaled time step.
+  void restore(const Conditions& before);
 
   void step() { trackbed::step(model, state, work); }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/archive.h"
 #include "base/units.h"
 #include "io/schema.h"
 #include "lab/simulation.h"
@@ -19,6 +20,10 @@ struct Result {
   std::string name;
   double value = 0;  // SI
   Dimension dimension = Dimension::none;
+  template <class A>
+  void archive(A& a) {
+    a(name, value, dimension);
+  }
 };
 
 class Document;
@@ -44,15 +49,18 @@ class Stage {
  public:
   virtual ~Stage() = default;
 
-  /// Called once before the first step; may add, remove and place stones.
+  /// Called once before the first step; may add, remove and place stones, and change the model's conditions
+  /// until its end.
   virtual void open(Simulation& sim) = 0;
   /// Called before each step: sets the targets of drives.
   virtual void control(Simulation&) {}
   virtual bool finished(const Simulation& sim) = 0;
-  /// Called once after the last step: undoes what the stage changed in the model; returns what it found.
+  /// Called once after the last step; returns what it found. The conditions are brought back after it.
   virtual std::vector<Result> close(Simulation&) { return {}; }
   /// Simulated time this stage will take from now on, for the progress line [s]; 0: not known.
   virtual double remaining(const Simulation&) const { return 0; }
+  /// All that changes between open and close, for a run that is taken up again.
+  virtual void archive(Archive&) = 0;
 };
 
 /// All stages that a case may name.

@@ -20,6 +20,11 @@ struct StageSummary {
   double energy_error = 0;         // change of the energy balance's total during the stage [J]
   std::vector<Result> results;     // found by the stage
   std::vector<Result> measures;    // all general measures at its end
+
+  template <class A>
+  void archive(A& a) {
+    a(name, kind, steps, simulated, wall, energy_error, results, measures);
+  }
 };
 
 struct Summary {

@@ -64,7 +64,7 @@ TEST(failure, too_fast) {
 
 TEST(failure, outside_the_domain) {
   Simulation sim = three_balls();
-  sim.model.limits.domain = Eigen::AlignedBox3d(Vec3(-0.05, -1, 0), Vec3(0.15, 1, 1));
+  sim.model.domain = Eigen::AlignedBox3d(Vec3(-0.05, -1, 0), Vec3(0.15, 1, 1));
   const std::string text = complaint(sim);
   EXPECT_TRUE(has(text, "stone 2 at (0.2") && has(text, "left the container")) << text;
 }

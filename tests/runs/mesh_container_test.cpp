@@ -81,14 +81,7 @@ TEST(mesh_container, is_filled_by_its_volume_and_bears_the_stones) {
   EXPECT_NEAR(volume_in(sim.container, [&](const Vec3& x) { return is_in_room(sim, x); }) / volume, 1, 0.01);
 
   std::vector<NamedStage> stages = stages_of(experiment);
-  for (NamedStage& named : stages) {
-    named.stage->open(sim);
-    while (!named.stage->finished(sim)) {
-      named.stage->control(sim);
-      sim.step();
-    }
-    named.stage->close(sim);
-  }
+  for (NamedStage& named : stages) carry_out(sim, *named.stage);
   EXPECT_NEAR(solid_volume(sim) / (0.5 * volume), 1, 0.03);  // a stone is 1 %
   for (const Vec3& x : sim.state.clumps.position) EXPECT_TRUE(is_in_room(sim, x)) << x.transpose();
   EXPECT_NEAR(-sim.state.walls[0].force.z() / weight(sim), 1, 1e-2);

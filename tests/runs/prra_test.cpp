@@ -70,13 +70,10 @@ struct Bed {
     document.read(input);
     sim = make_simulation(document, input);
     for (NamedStage& named : stages_of(input)) {
-      named.stage->open(sim);
-      if (named.name == "replace") look_at_balls();
-      while (!named.stage->finished(sim)) {
-        named.stage->control(sim);
-        sim.step();
-      }
-      for (const Result& r : named.stage->close(sim))
+      const auto opened = [&] {
+        if (named.name == "replace") look_at_balls();
+      };
+      for (const Result& r : carry_out(sim, *named.stage, opened))
         if (r.name == "factor") factor = r.value;
     }
   }
@@ -121,12 +118,7 @@ TEST(prra, mean_stress_is_that_of_the_walls) {
   document.read(input);
   Simulation sim = make_simulation(document, input);
   const auto stages = stages_of(input);
-  stages[0].stage->open(sim);
-  while (!stages[0].stage->finished(sim)) {
-    stages[0].stage->control(sim);
-    sim.step();
-  }
-  stages[0].stage->close(sim);
+  carry_out(sim, *stages[0].stage);
   sim.model.gravity = Vec3::Zero();
   for (int k = 0; k < 20'000; ++k) sim.step();
   double by_walls = 0, by_contacts = 0;

@@ -60,16 +60,6 @@ kind = "replace"
 region = "low"
 )toml";
 
-/// A stage from its beginning to its end.
-void run_through(NamedStage& named, Simulation& sim) {
-  named.stage->open(sim);
-  while (!named.stage->finished(sim)) {
-    named.stage->control(sim);
-    sim.step();
-  }
-  named.stage->close(sim);
-}
-
 class TwoFidelities : public testing::Test {
  protected:
   void SetUp() override {
@@ -90,9 +80,9 @@ class TwoFidelities : public testing::Test {
 
 TEST_F(TwoFidelities, EachPartHasItsPorosity) {
   const double largest = std::numbers::pi / 6 * std::pow(0.03, 3);  // stone [m^3]
-  run_through(stages[0], sim);
+  carry_out(sim, *stages[0].stage);
   EXPECT_NEAR(solid_volume(sim), 0.65 * 0.2 * 0.2 * 0.08, largest);
-  run_through(stages[1], sim);
+  carry_out(sim, *stages[1].stage);
   EXPECT_NEAR(solid_volume(sim), 0.65 * 0.2 * 0.2 * 0.08 + 0.55 * 0.2 * 0.2 * 0.12, 2 * largest);
 }
 
@@ -111,15 +101,15 @@ TEST_F(TwoFidelities, AStandInHasThePebblesOfItsClumpInOneAndWeighsTheSame) {
 }
 
 TEST_F(TwoFidelities, OnlyStonesInTheRegionAreReplacedAndNoneChangesItsMass) {
-  run_through(stages[0], sim);
-  run_through(stages[1], sim);
+  carry_out(sim, *stages[0].stage);
+  carry_out(sim, *stages[1].stage);
   std::set<int> low;  // ids of those that must become clumps
   std::vector<double> mass_of(sim.state.clumps.id.size());
   for (std::size_t k = 0; k < mass_of.size(); ++k) {
     mass_of[static_cast<std::size_t>(sim.state.clumps.id[k])] = sim.state.clumps.mass[k];
     if (sim.state.clumps.position[k].z() < 0.08) low.insert(sim.state.clumps.id[k]);
   }
-  run_through(stages[2], sim);
+  carry_out(sim, *stages[2].stage);
   std::size_t replaced = 0;
   for (std::size_t k = 0; k < mass_of.size(); ++k) {
     const int id = sim.state.clumps.id[k];

@@ -51,11 +51,10 @@ class Adjust : public Stage {
   explicit Adjust(const AdjustInput& in) : in_(in) {}
 
   void open(Simulation& sim) override {
-    pairs_ = sim.model.pairs;
-    if (in_.friction) sim.model.pairs = pairs_.with_friction_up_to(*in_.friction);
+    if (in_.friction) sim.model.pairs = sim.model.pairs.with_friction_up_to(*in_.friction);
     target_ = in_.stress ? *in_.stress : stress_of_weight(sim);
     start_ = next_ = sim.state.step;
-    sim.scale_step(true);
+    sim.scale_step();
     sim.changed();
   }
 
@@ -82,9 +81,6 @@ class Adjust : public Stage {
 
   std::vector<Result> close(Simulation& sim) override {
     const BedStress now = bed_stress(sim);
-    sim.model.pairs = pairs_;
-    sim.scale_step(false);
-    sim.changed();
     return {{"factor", factor_, Dimension::none},
             {"rounds", static_cast<double>(round_), Dimension::none},
             {"stress", now.mean, Dimension::stress},
@@ -92,6 +88,7 @@ class Adjust : public Stage {
             {"porosity", porosity(sim, solid_volume(sim)), Dimension::none},
             {"largest_overlap", largest_overlap(sim), Dimension::none}};
   }
+  void archive(Archive& a) override { a(target_, factor_, round_, start_, next_, reached_); }
 
  private:
   double tolerance() const { return in_.tolerance.value_or(in_.stress ? 0.05 : 0.5); }
@@ -123,7 +120,6 @@ class Adjust : public Stage {
   }
 
   AdjustInput in_;
-  PairTable pairs_;
   double target_ = 0, factor_ = 1;
   int round_ = 0;
   std::int64_t start_ = 0, next_ = 0;

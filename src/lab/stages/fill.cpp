@@ -63,7 +63,7 @@ class Fill : public Stage {
     cell_ = largest_bound(sim);
     for (int stone = 0; stone < sim.state.clumps.size(); ++stone) remember(sim, stone);
     for (double size : sizes_) place(sim, size, rng);
-    sim.model.limits.domain.extend(column_);
+    sim.model.domain.extend(column_);
     sim.changed();
   }
 
@@ -75,6 +75,7 @@ class Fill : public Stage {
     for (const Result& r : passing_results(stones_.grading, sizes_)) results.push_back(r);
     return results;
   }
+  void archive(Archive& a) override { a(sizes_, column_); }
 
  private:
   using Cell = std::int64_t;

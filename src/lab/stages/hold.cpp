@@ -21,6 +21,7 @@ class Hold : public Stage {
   void open(Simulation& sim) override { end_ = sim.state.time + in_.duration; }
   bool finished(const Simulation& sim) override { return sim.state.time >= end_; }
   double remaining(const Simulation& sim) const override { return end_ - sim.state.time; }
+  void archive(Archive& a) override { a(end_); }
 
  private:
   HoldInput in_;

@@ -66,7 +66,7 @@ class Insert : public Stage {
     wall.held = in_.held;
     wall.velocity = wall.angular_velocity = wall.angular_momentum = Vec3::Zero();
     sim.wall_reference[b] = wall.pose;
-    sim.model.limits.domain.extend(wall.pose.position + box.max());
+    sim.model.domain.extend(wall.pose.position + box.max());
 
     std::vector<int> gone;
     for (int c = 0; c < sim.state.clumps.size(); ++c)
@@ -83,6 +83,7 @@ class Insert : public Stage {
             {"bed_surface", surface_, Dimension::length},
             {"bottom", bottom_, Dimension::length}};
   }
+  void archive(Archive& a) override { a(removed_, surface_, bottom_); }
 
  private:
   bool is_in_the_way(const Simulation& sim, int stone, int body) const {

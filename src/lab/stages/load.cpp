@@ -112,6 +112,7 @@ class Load : public Stage {
       results.push_back({"displacement_last_half_cycle", height(sim) - half_cycle_from_, Dimension::length});
     return results;
   }
+  void archive(Archive& a) override { a(body_, start_, from_, half_cycle_from_, before_, energy_); }
 
  private:
   double height(const Simulation& sim) const {

@@ -86,6 +86,7 @@ class Move : public Stage {
     if (in_.distance) left = std::max(left, (*in_.distance - distance(sim)) / in_.velocity.norm());
     return left;
   }
+  void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, probed_); }
 
  private:
   double distance(const Simulation& sim) const {

@@ -45,18 +45,15 @@ void soften(const Simulation& sim, double share, PairTable& pairs) {
 
 void Parting::open(Simulation& sim, double share_of_stiffness) {
   start_ = sim.state.time;
-  gravity_ = sim.model.gravity;
-  damping_ = sim.model.local_damping;
-  limits_ = sim.model.limits;
-  pairs_ = sim.model.pairs;
+  overlap_limit_ = sim.model.limits.overlap;
   smallest_ = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < sim.state.clumps.id.size(); ++k)
     smallest_ = std::min(smallest_, equal_volume_radius(sim, k));
   sim.model.gravity = Vec3::Zero();
   sim.model.local_damping = 0.7;
   sim.model.limits.overlap = sim.model.limits.speed = std::numeric_limits<double>::infinity();
-  sim.model.pairs = pairs_.with_friction_up_to(0);
-  sim.scale_step(true);
+  sim.model.pairs = sim.model.pairs.with_friction_up_to(0);
+  sim.scale_step();
   soften(sim, share_of_stiffness, sim.model.pairs);
   sim.changed();
 }
@@ -80,7 +77,7 @@ bool Parting::is_done(const Simulation& sim, double mean_overlap, double time_li
   constexpr int look_every = 50;
   if (sim.state.step % look_every != 0) return false;
   now_ = overlaps_of_stones(sim);
-  if (now_.mean < mean_overlap && now_.largest < limits_.overlap) return true;
+  if (now_.mean < mean_overlap && now_.largest < overlap_limit_) return true;
   if (sim.state.time - start_ > time_limit)
     throw RunError(
         fmt::format("the stones do not part: after {:.3g} s their mean overlap is {:.2g} % of a "
@@ -88,15 +85,6 @@ bool Parting::is_done(const Simulation& sim, double mean_overlap, double time_li
                     "porosity",
                     time_limit, 100 * now_.mean, 100 * mean_overlap));
   return false;
-}
-
-void Parting::close(Simulation& sim) {
-  sim.model.gravity = gravity_;
-  sim.model.local_damping = damping_;
-  sim.model.limits = limits_;
-  sim.model.pairs = pairs_;
-  sim.scale_step(false);
-  sim.changed();
 }
 
 }  // namespace trackbed

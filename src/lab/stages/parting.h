@@ -8,11 +8,15 @@ namespace trackbed {
 /// Mean overlap of stones with stones, over the smaller stone's equal-volume radius [-]; and the largest.
 struct Overlaps {
   double mean = 0, largest = 0;
+  template <class A>
+  void archive(A& a) {
+    a(mean, largest);
+  }
 };
 Overlaps overlaps_of_stones(const Simulation& sim);
 
-/// While it lasts there is neither friction nor gravity, overlaps are not limited, and stones move so little
-/// in a step that none is thrown.
+/// From when it is opened to the end of the stage there is neither friction nor gravity, overlaps are not
+/// limited, and stones move so little in a step that none is thrown.
 class Parting {
  public:
   /// Stones of materials that no wall is made of meet each other with this share of their stiffness: they
@@ -26,17 +30,17 @@ class Parting {
   /// Whether the mean overlap is below this share.
   bool is_done(const Simulation& sim, double mean_overlap, double time_limit);
 
-  void close(Simulation& sim);
-
   double time(const Simulation& sim) const { return sim.state.time - start_; }  ///< since it began [s]
   const Overlaps& overlaps() const { return now_; }                             ///< when last looked at
+  template <class A>
+  void archive(A& a) {
+    a(start_, smallest_, overlap_limit_, now_);
+  }
 
  private:
-  double start_ = 0, damping_ = 0;
-  double smallest_ = 0;  // equal-volume radius [m]
-  Limits limits_;
-  Vec3 gravity_ = Vec3::Zero();
-  PairTable pairs_;
+  double start_ = 0;          // [s]
+  double smallest_ = 0;       // equal-volume radius [m]
+  double overlap_limit_ = 0;  // of the bed when they have parted [-]
   Overlaps now_;
 };
 

@@ -26,6 +26,7 @@ class Release : public Stage {
     sim.state.walls[body].held = false;
   }
   bool finished(const Simulation&) override { return true; }
+  void archive(Archive&) override {}
 
  private:
   ReleaseInput in_;

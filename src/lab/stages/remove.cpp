@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "lab/case.h"
-#include "lab/checks.h"
+#include "lab/stages/selection.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -9,10 +9,10 @@ namespace {
 
 struct RemoveInput : StageInput {
   std::vector<std::string> walls;
-  std::string region;
+  Selection where;
   void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override {
     for (const std::string& wall : walls) check_wall(document, sim, here + ".walls", wall);
-    if (!region.empty()) check_region(document, experiment, here + ".region", region);
+    where.check(document, experiment, here);
   }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
@@ -20,8 +20,8 @@ struct RemoveInput : StageInput {
 void declare(Fields& f, RemoveInput& in) {
   declare_common(f, in);
   f.texts("walls", in.walls, "walls that are taken away, such as the forms and the lid of a bed");
-  f.text("region", in.region, "stones whose centres lie in it are taken away");
-  f.check(!in.walls.empty() || !in.region.empty(), "walls", "there is nothing to take away",
+  declare_selection(f, in.where, "are taken away", "none");
+  f.check(!in.walls.empty() || !in.where.is_all(), "walls", "there is nothing to take away",
           "name walls, or a region");
 }
 
@@ -36,9 +36,8 @@ class Remove : public Stage {
       wall.velocity = wall.angular_velocity = wall.force = wall.moment = Vec3::Zero();
     }
     std::vector<int> gone;
-    for (int c = 0; !in_.region.empty() && c < sim.state.clumps.size(); ++c)
-      if (sim.regions.at(in_.region)(sim.state.clumps.position[static_cast<std::size_t>(c)]))
-        gone.push_back(c);
+    for (int c = 0; !in_.where.is_all() && c < sim.state.clumps.size(); ++c)
+      if (in_.where.contains(sim, sim.state.clumps.position[static_cast<std::size_t>(c)])) gone.push_back(c);
     remove_clumps(sim.state, gone);
     removed_ = static_cast<int>(gone.size());
     sim.changed();
@@ -49,6 +48,7 @@ class Remove : public Stage {
   std::vector<Result> close(Simulation&) override {
     return {{"removed", static_cast<double>(removed_), Dimension::none}};
   }
+  void archive(Archive& a) override { a(removed_); }
 
  private:
   RemoveInput in_;

@@ -68,7 +68,6 @@ class Replace : public Stage {
   }
 
   std::vector<Result> close(Simulation& sim) override {
-    parting_.close(sim);
     const double all = std::max(1, sim.state.clumps.size());
     return {{"replaced", static_cast<double>(replaced_), Dimension::none},
             {"left", static_cast<double>(left_), Dimension::none},
@@ -77,6 +76,7 @@ class Replace : public Stage {
             {"mean_overlap", parting_.overlaps().mean, Dimension::none},
             {"largest_overlap", parting_.overlaps().largest, Dimension::none}};
   }
+  void archive(Archive& a) override { a(parting_, replaced_, left_); }
 
  private:
   /// Any orientation; beside walls one in which the stone keeps clear of all of them, or at least of those of

@@ -74,13 +74,13 @@ class Scatter : public Stage {
   }
 
   std::vector<Result> close(Simulation& sim) override {
-    parting_.close(sim);
     std::vector<Result> results{{"added", static_cast<double>(sizes_.size()), Dimension::none},
                                 {"time", parting_.time(sim), Dimension::time},
                                 {"mean_overlap", parting_.overlaps().mean, Dimension::none}};
     for (const Result& r : passing_results(experiment_.stones.grading, sizes_)) results.push_back(r);
     return results;
   }
+  void archive(Archive& a) override { a(sizes_, parting_); }
 
  private:
   void place(Simulation& sim, const StoneSet& set, double size, Rng& rng) const {

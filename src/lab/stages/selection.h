@@ -22,9 +22,11 @@ struct Selection {
   }
 };
 
-/// Declares the keys `region` and `outside`; `effect` ends the sentence "stones in it ...".
-inline void declare_selection(Fields& f, Selection& in, const std::string& effect) {
-  f.text("region", in.region, "stones whose centres lie in it " + effect + "; by default all");
+/// Declares the keys `region` and `outside`; `effect` ends the sentence "stones in it ...", `otherwise` tells
+/// what happens without a region.
+inline void declare_selection(Fields& f, Selection& in, const std::string& effect,
+                              const std::string& otherwise = "all") {
+  f.text("region", in.region, "stones whose centres lie in it " + effect + "; by default " + otherwise);
   f.flag("outside", in.outside, "those outside the region instead");
   f.check(!in.outside || !in.region.empty(), "outside", "there is no region to be outside of", "give region");
 }

@@ -49,6 +49,7 @@ class Servo : public Stage {
     return {{"force", -state(sim).force.dot(in_.direction), Dimension::force},
             {"distance", (state(sim).pose.position - from_).dot(in_.direction), Dimension::length}};
   }
+  void archive(Archive& a) override { a(wall_, end_, from_); }
 
  private:
   WallState& state(Simulation& sim) const { return sim.state.walls[static_cast<std::size_t>(wall_)]; }

@@ -48,13 +48,11 @@ class Settle : public Stage {
 
   void open(Simulation& sim) override {
     start_ = sim.state.time;
-    pairs_ = sim.model.pairs;
-    damping_ = sim.model.local_damping;
-    gravity_ = sim.model.gravity;
-    if (in_.gravity) sim.model.gravity = *in_.gravity * gravity_.normalized();
-    if (in_.damping) sim.model.local_damping = *in_.damping;
-    if (in_.friction) sim.model.pairs = pairs_.with_friction_up_to(*in_.friction);
-    if (in_.scaled) sim.scale_step(true);
+    Model& m = sim.model;
+    if (in_.gravity) m.gravity = *in_.gravity * m.gravity.normalized();
+    if (in_.damping) m.local_damping = *in_.damping;
+    if (in_.friction) m.pairs = m.pairs.with_friction_up_to(*in_.friction);
+    if (in_.scaled) sim.scale_step();
   }
 
   bool finished(const Simulation& sim) override {
@@ -73,22 +71,14 @@ class Settle : public Stage {
 
   std::vector<Result> close(Simulation& sim) override {
     const double ratio = unbalanced_ratio(sim.model, sim.state);
-    sim.model.pairs = pairs_;
-    sim.model.local_damping = damping_;
-    sim.model.gravity = gravity_;
-    if (in_.scaled) {
-      sim.scale_step(false);
-      sim.changed();
-    }
     return {{"time", sim.state.time - start_, Dimension::time}, {"unbalanced_ratio", ratio, Dimension::none}};
   }
+  void archive(Archive& a) override { a(start_, calm_); }
 
  private:
   static constexpr int look_every = 50, looks_needed = 5;
   SettleInput in_;
-  double start_ = 0, damping_ = 0;
-  Vec3 gravity_ = Vec3::Zero();
-  PairTable pairs_;
+  double start_ = 0;
   int calm_ = 0;
 };
 

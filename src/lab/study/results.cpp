@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "io/csv.h"
+#include "io/echo.h"
 #include "io/files.h"
 #include "io/nearest.h"
 
@@ -25,20 +26,6 @@ std::optional<Json> read_json(const fs::path& path) {
   Json json = Json::parse(read_file(path), nullptr, false);
   if (json.is_discarded()) return std::nullopt;
   return json;
-}
-
-void flatten(const Json& json, const std::string& path, std::map<std::string, std::string>& all) {
-  if (json.is_object() || (json.is_array() && !json.empty() && json[0].is_object())) {
-    std::size_t k = 0;
-    for (const auto& [key, value] : json.items()) {
-      std::string part = json.is_array() ? std::to_string(k) : key;
-      if (json.is_array() && value.contains("name")) part = value["name"].get<std::string>();
-      flatten(value, path.empty() ? part : path + "." + part, all);
-      ++k;
-    }
-    return;
-  }
-  all[path] = json.is_string() ? json.get<std::string>() : json.dump();
 }
 
 const char* text_of(MemberStatus status) {
@@ -134,27 +121,6 @@ Outcome outcome_of(const Member& member, const fs::path& folder) {
 void write_failure(const Member& member, const std::string& cause, const fs::path& folder) {
   make_folder(folder);
   write_file(folder / failure_file, Json{{"cause", cause}, {"input", member.input}}.dump(1));
-}
-
-std::string difference(const Json& before, const Json& after) {
-  std::map<std::string, std::string> old_values, new_values;
-  flatten(before, "", old_values);
-  flatten(after, "", new_values);
-  std::vector<std::string> changes;
-  for (const auto& [key, value] : new_values) {
-    const auto old = old_values.find(key);
-    if (old == old_values.end())
-      changes.push_back(fmt::format("{}: new", key));
-    else if (old->second != value)
-      changes.push_back(fmt::format("{}: {} -> {}", key, old->second, value));
-  }
-  for (const auto& [key, value] : old_values)
-    if (!new_values.contains(key)) changes.push_back(fmt::format("{}: gone", key));
-  constexpr std::size_t most = 3;
-  const std::size_t all = changes.size();
-  if (all > most) changes.resize(most);
-  return fmt::format("{}{}", fmt::join(changes, ", "),
-                     all > most ? fmt::format(" and {} more", all - most) : "");
 }
 
 std::optional<double> measure_in(const Json& summary, const std::string& name) {

@@ -27,9 +27,6 @@ Outcome outcome_of(const Member& member, const std::filesystem::path& folder);
 /// Remembers that a member failed, with its input.
 void write_failure(const Member& member, const std::string& cause, const std::filesystem::path& folder);
 
-/// The keys in which two resolved inputs differ, "stones.ratio: 0.3 -> 0.4"; the first few.
-std::string difference(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
-
 /// Value of a measure of a summary; nothing when it has none.
 std::optional<double> measure_in(const nlohmann::ordered_json& summary, const std::string& name);
 

@@ -59,6 +59,7 @@ class Steps : public Stage {
   void open(Simulation&) override {}
   void control(Simulation&) override { --left_; }
   bool finished(const Simulation&) override { return left_ == 0; }
+  void archive(Archive& a) override { a(left_, stones_); }
   std::vector<Result> close(Simulation&) override {
     return {{"answer", 42, Dimension::force}, {"added", stones_}};
   }
