@@ -21,11 +21,6 @@ using Index = std::size_t;
                              state.clumps.id[c], x.x(), x.y(), x.z(), state.step, state.time, what));
 }
 
-double volume_radius(const Model& model, const Clumps& c, Index i) {
-  const double volume = model.templates[static_cast<Index>(c.shape[i])].volume * std::pow(c.scale[i], 3);
-  return std::cbrt(volume * 3.0 / (4.0 * M_PI));
-}
-
 /// Rate at t of a quantity whose rate is known at t - dt/2, with the damped force of the half step to come;
 /// `lost` gains what damping takes meanwhile.
 Vec3 half_kicked(const Vec3& rate, const Vec3& unbalanced, const Vec3& inertia, double alpha, double half,
@@ -83,8 +78,9 @@ void inspect(const Model& model, const State& state, const Workspace& work) {
       throw RunError(fmt::format("step {}, t = {:.6g} s: the motion of a wall or body is not a number",
                                  state.step, state.time));
   visit_touching(model, state, [&](const Touching& t) {
-    double radius = volume_radius(model, c, static_cast<Index>(t.clump_1));
-    if (t.clump_2 >= 0) radius = std::min(radius, volume_radius(model, c, static_cast<Index>(t.clump_2)));
+    double radius = equal_volume_radius(model, c, static_cast<Index>(t.clump_1));
+    if (t.clump_2 >= 0)
+      radius = std::min(radius, equal_volume_radius(model, c, static_cast<Index>(t.clump_2)));
     if (t.clump_2 < 0 && t.overlap > limits.through * t.radius &&
         !model.walls[static_cast<Index>(t.wall)].shape.is_plane)
       fail(state, static_cast<Index>(t.clump_1),

@@ -8,6 +8,7 @@
 
 #include "base/vec.h"
 #include "dem/material.h"
+#include "dem/space.h"
 #include "dem/wall_shape.h"
 #include "geom/clump_template.h"
 
@@ -71,6 +72,7 @@ struct Conditions {
 };
 
 struct Model : Conditions {
+  Space space;
   std::vector<Material> materials;
   std::vector<ClumpTemplate> templates;
   std::vector<Wall> walls;

@@ -176,6 +176,10 @@ struct Batch {
   m.turning.turn = {turn[3], turn[0], turn[1], turn[2]};
   m.turning.damping_loss = each_lane([&](Index k) { return c.losses[q.at[k]].damping; });
 
+  if (model.space.is_plane()) {  // rounding at edges that stand on the plane must not tip a stone out of it
+    m.force.y() = m.moment.x() = m.moment.z() = 0.0;
+  }
+
   const Lanes ways = move(model, m, kick_time, dt);
 
   q.store(m.position, c.position);

@@ -31,24 +31,44 @@ void add(Hash& hash, const ContactMemory& m) {
   add(hash, m.rolling);
 }
 
+/// Mass and inertia as shape, size and material have it; the speeds stay, and the share by which inertia is
+/// scaled.
+void weigh(const Model& model, State& state, int clump) {
+  const Index i = static_cast<Index>(clump);
+  Clumps& c = state.clumps;
+  const ClumpTemplate& t = model.templates[static_cast<Index>(c.shape[i])];
+  const double density = model.materials[static_cast<Index>(c.material[i])].density, scale = c.scale[i];
+  const double scaled = c.mass[i] > 0 ? c.inertial_mass[i] / c.mass[i] : 1.0;
+  c.mass[i] = density * volume_of(model, c, i);
+  c.inertial_mass[i] = scaled * c.mass[i];
+  c.inertia[i] = scaled * density * scale * scale * model.space.growth_of_volume(scale) * t.inertia;
+  set_motion(state, clump, c.velocity[i], c.angular_velocity[i]);
+}
+
 }  // namespace
 
+double volume_of(const Model& model, const Clumps& clumps, std::size_t clump) {
+  return model.templates[static_cast<Index>(clumps.shape[clump])].volume *
+         model.space.growth_of_volume(clumps.scale[clump]);
+}
+
+double equal_volume_radius(const Model& model, const Clumps& clumps, std::size_t clump) {
+  return 0.5 * model.space.size_of_volume(volume_of(model, clumps, clump));
+}
+
 int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose) {
-  const ClumpTemplate& t = model.templates[static_cast<Index>(shape)];
-  const double density = model.materials[static_cast<Index>(material)].density;
   Clumps& c = state.clumps;
   c.id.push_back(c.next_id++);
   c.shape.push_back(shape);
   c.material.push_back(material);
   c.scale.push_back(scale);
-  c.mass.push_back(density * t.volume * scale * scale * scale);
-  c.inertial_mass.push_back(c.mass.back());
-  c.inertia.push_back(density * std::pow(scale, 5) * t.inertia);
+  for (auto* zero : {&c.mass, &c.inertial_mass}) zero->push_back(0.0);
   c.position.push_back(pose.position);
   c.orientation.push_back(pose.orientation);
-  for (auto* zero : {&c.velocity, &c.angular_momentum, &c.angular_velocity, &c.force, &c.moment})
+  for (auto* zero : {&c.inertia, &c.velocity, &c.angular_momentum, &c.angular_velocity, &c.force, &c.moment})
     zero->push_back(Vec3::Zero());
   c.losses.emplace_back();
+  weigh(model, state, c.size() - 1);
   return c.size() - 1;
 }
 
@@ -62,20 +82,6 @@ void set_motion(State& state, int clump, const Vec3& velocity, const Vec3& angul
 }
 
 namespace {
-
-/// Mass and inertia as shape, size and material have it; the speeds stay, and the share by which inertia is
-/// scaled.
-void weigh(const Model& model, State& state, int clump) {
-  const Index i = static_cast<Index>(clump);
-  Clumps& c = state.clumps;
-  const ClumpTemplate& t = model.templates[static_cast<Index>(c.shape[i])];
-  const double density = model.materials[static_cast<Index>(c.material[i])].density;
-  const double scaled = c.mass[i] > 0 ? c.inertial_mass[i] / c.mass[i] : 1.0;
-  c.mass[i] = density * t.volume * std::pow(c.scale[i], 3);
-  c.inertial_mass[i] = scaled * c.mass[i];
-  c.inertia[i] = scaled * density * std::pow(c.scale[i], 5) * t.inertia;
-  set_motion(state, clump, c.velocity[i], c.angular_velocity[i]);
-}
 
 /// Lets go of the candidates of the pairs that `is_gone` tells, and of the pairs.
 template <class Block, class IsGone>

@@ -159,7 +159,13 @@ inline bool keeps_velocity(const Wall& wall, const WallState& state, int axis) {
   return !wall.body || state.held || !wall.body->free_shift[static_cast<std::size_t>(axis)];
 }
 
-/// Adds a stone at rest; returns its index. Mass is density x template volume x scale^3.
+/// Volume of a stone [m^3].
+double volume_of(const Model& model, const Clumps& clumps, std::size_t clump);
+
+/// Radius of the ball, or the disc, of that volume [m].
+double equal_volume_radius(const Model& model, const Clumps& clumps, std::size_t clump);
+
+/// Adds a stone at rest; returns its index. Mass is density x volume.
 int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose);
 
 /// Sets the velocity [m/s] and angular velocity [rad/s] of a stone.

@@ -43,6 +43,12 @@ ClumpTemplate make_ball_template(double radius) {
                              Vec3::Constant(0.4 * volume * radius * radius), {}, 2.0 * radius);
 }
 
+ClumpTemplate make_disc_template(double radius, double thickness) {
+  const double volume = std::numbers::pi * radius * radius * thickness;
+  return make_clump_template("disc", {{Vec3::Zero(), radius}}, volume,
+                             Vec3::Constant(0.5 * volume * radius * radius), {}, 2.0 * radius);
+}
+
 ClumpTemplate make_stand_in(const ClumpTemplate& clump) {
   const double radius = std::cbrt(0.75 * clump.pebble_volume / std::numbers::pi);
   return make_clump_template("stand-in for " + clump.name, {{Vec3::Zero(), radius}}, clump.volume,

@@ -40,6 +40,10 @@ ClumpTemplate make_clump_template(std::string name, std::vector<Pebble> pebbles,
 /// A ball of the given radius [m]: a clump of one pebble.
 ClumpTemplate make_ball_template(double radius);
 
+/// One pebble, with volume and inertia of a disc of this thickness [m] about the axis y; the other moments
+/// are not asked for, and equal to it.
+ClumpTemplate make_disc_template(double radius, double thickness);
+
 /// A ball in the stead of a clump: as large as the union of its pebbles, with its volume and so its weight,
 /// which are those of a mesh that the pebbles do not fill.
 ClumpTemplate make_stand_in(const ClumpTemplate& clump);

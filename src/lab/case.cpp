@@ -69,7 +69,13 @@ std::optional<ClumpTemplate> stone_from_file(const std::filesystem::path& file, 
 
 /// The templates of one set; `key`: where it stands in the case.
 std::vector<ClumpTemplate> make_templates(const Document& document, const std::string& key,
-                                          const ShapesInput& stones, std::uint64_t seed) {
+                                          const ShapesInput& stones, std::uint64_t seed, const Space& space) {
+  if (space.is_plane()) {
+    if (stones.fidelity != "ball")
+      document.fail(key + ".fidelity", "stones of a model with a thickness are discs",
+                    "choose fidelity = \"ball\", or leave out thickness");
+    return {make_disc_template(0.02, space.thickness)};
+  }
   if (stones.fidelity == "ball") return {make_ball_template(0.02)};
   ClumpFilling filling;
   filling.distance = stones.distance;
@@ -113,12 +119,12 @@ void build_set(const Document& document, const std::string& name, const ShapesIn
     document.fail("materials." + in.material, "the stones' material has no density",
                   "give density, for example \"2630 kg/m^3\"");
   std::vector<ClumpTemplate> templates;
-  if (in.fidelity == "stand_in") {
+  if (in.fidelity == "stand_in" && !sim.model.space.is_plane()) {
     const StoneSet& stones = sim.stone_set("");
     for (int t = stones.first; t < stones.first + stones.count; ++t)
       templates.push_back(make_stand_in(sim.model.templates[static_cast<std::size_t>(t)]));
   } else {
-    templates = make_templates(document, key, in, sim.seed);
+    templates = make_templates(document, key, in, sim.seed, sim.model.space);
   }
   sim.stone_sets.push_back(
       {name, static_cast<int>(sim.model.templates.size()), static_cast<int>(templates.size()), material});
@@ -149,6 +155,7 @@ void build_body(const std::string& name, const BodyInput& in, int material, Simu
   };
   body.free_shift = {has("x"), has("y"), has("z")};
   body.free_turn = {has("turn_x"), has("turn_y"), has("turn_z")};
+  if (sim.model.space.is_plane()) body.free_shift[1] = body.free_turn[0] = body.free_turn[2] = false;
 
   // The frame of a body is that of its principal axes; it stands as it was drawn.
   const WallShape shape = make_mesh_wall(name, in_principal_frame(mesh, mass));
@@ -161,6 +168,7 @@ void build_body(const std::string& name, const BodyInput& in, int material, Simu
 Simulation make_simulation(const Document& document, const CaseInput& in) {
   Simulation sim;
   sim.seed = in.seed;
+  sim.model.space.thickness = in.thickness.value_or(0);
   build_materials(in, sim);
   check_names(document, in);
   for (const auto& [name, wall] : in.walls) {
@@ -187,6 +195,7 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
   m.limits.overlap = in.numerics.overlap_limit;
   m.limits.speed = in.numerics.speed_limit;
   if (!sim.container.isEmpty()) m.domain = sim.container;
+  check_plane(document, in, sim);
   check_time_step(document, in, sim);
   check_stages(document, in, sim);
   sim.changed();

@@ -116,6 +116,7 @@ struct RecordInput {
 struct CaseInput {
   std::string title;
   std::uint64_t seed = 1;
+  std::optional<double> thickness;  // of a model in the plane [m]
   StonesInput stones;
   std::map<std::string, MaterialInput> materials;
   ContactInput contact;

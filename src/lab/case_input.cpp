@@ -131,6 +131,10 @@ void declare(Fields& f, RecordInput& in) {
 void declare(Fields& f, CaseInput& in) {
   f.text(required("title"), in.title, "what the experiment is about");
   f.integer("seed", in.seed, {}, "of all random numbers");
+  f.quantity(
+      "thickness", in.thickness, Dimension::length, {.above = 0},
+      "makes the model two-dimensional: discs of this thickness in the plane y = 0; forces are those of the "
+      "thickness");
   f.section("stones", in.stones, "shapes, sizes and material of the stones");
   f.table("materials", in.materials, "materials by name");
   f.section("contact", in.contact, "contact law");

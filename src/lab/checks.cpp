@@ -107,6 +107,46 @@ void check_stages(const Document& document, const CaseInput& in, const Simulatio
     if (!seen.contains(name)) refuse_unknown(document, "record.stages", "stage", name, names);
 }
 
+void check_in_plane(const Document& document, const Simulation& sim, const std::string& key,
+                    const Vec3& vector) {
+  if (sim.model.space.is_plane() && vector.y() != 0)
+    document.fail(key, "it leads out of the plane y = 0 of a model with a thickness",
+                  "give it no part along y, or leave out thickness");
+}
+
+void check_plane(const Document& document, const CaseInput& in, const Simulation& sim) {
+  const Space& space = sim.model.space;
+  if (!space.is_plane()) return;
+  check_in_plane(document, sim, "numerics.gravity", sim.model.gravity);
+  const auto reaches_through = [&](double low, double high) {
+    return std::abs(high - 0.5 * space.thickness) < 1e-9 && std::abs(low + 0.5 * space.thickness) < 1e-9;
+  };
+  if (!sim.container.isEmpty() && !reaches_through(sim.container.min().y(), sim.container.max().y()))
+    document.fail(
+        "thickness",
+        fmt::format("the container goes from {:g} to {:g} m along y, not through a thickness of {:g} m",
+                    sim.container.min().y(), sim.container.max().y(), space.thickness),
+        "give the container that width, with its middle at y = 0");
+  for (const auto& [name, body] : in.bodies) {
+    const Wall& wall = sim.model.walls[static_cast<std::size_t>(sim.find_wall(name))];
+    Eigen::AlignedBox3d box;
+    for (const Vec3& v : wall.shape.mesh.vertices)
+      box.extend(sim.state.walls[static_cast<std::size_t>(sim.find_wall(name))].pose.orientation * v);
+    if (!reaches_through(box.min().y(), box.max().y()))
+      document.fail(body.input->here,
+                    fmt::format("{} is {:g} m wide along y, the thickness is {:g} m", name, box.sizes().y(),
+                                space.thickness),
+                    "give it the width of the thickness: its mass is that of the whole width");
+  }
+  for (std::size_t w = 0; w < sim.model.walls.size(); ++w) {
+    if (!sim.model.walls[w].shape.is_plane) continue;
+    const std::string& name = sim.model.walls[w].shape.name;
+    if (std::abs((sim.state.walls[w].pose.orientation * Vec3::UnitZ()).y()) > 1e-12)
+      document.fail("walls." + name.substr(0, name.find('.')), "this plane does not stand on the plane y = 0",
+                    "give its normal no part along y");
+  }
+}
+
 void check_time_step(const Document& document, const CaseInput& in, const Simulation& sim) {
   if (!in.numerics.time_step) return;
   // A stone of the smallest size, of each shape, alone: what a stone allows that may touch anything.
@@ -121,7 +161,8 @@ void check_time_step(const Document& document, const CaseInput& in, const Simula
       State state;
       Workspace work;
       const ClumpTemplate& t = model.templates[static_cast<std::size_t>(shape)];
-      add_clump(model, state, shape, scale_to_size(grading, t, smallest_size(grading)), set.material, {});
+      add_clump(model, state, shape, scale_to_size(grading, model.space, t, smallest_size(grading)),
+                set.material, {});
       settle_contacts(model, state, work);
       stable = std::min(stable, state.planned_dt);
     }

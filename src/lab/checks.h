@@ -36,6 +36,13 @@ void check_names(const Document& document, const CaseInput& experiment);
 /// Names of stages: each once; then all that the stages themselves know (StageInput::check).
 void check_stages(const Document& document, const CaseInput& experiment, const Simulation& sim);
 
+/// What must be so in a model of two dimensions: walls stand on the plane and reach through the thickness.
+void check_plane(const Document& document, const CaseInput& experiment, const Simulation& sim);
+
+/// Refuses a vector out of the plane, in a model of two dimensions.
+void check_in_plane(const Document& document, const Simulation& sim, const std::string& key,
+                    const Vec3& vector);
+
 /// A time step of the user's own must suit the smallest stone of the grading.
 void check_time_step(const Document& document, const CaseInput& experiment, const Simulation& sim);
 

@@ -3,27 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
-#include <numbers>
 
 namespace trackbed {
-namespace {
-
-double ball_volume(double diameter) {
-  return std::numbers::pi / 6.0 * diameter * diameter * diameter;
-}
-
-}  // namespace
-
-std::vector<double> draw_sizes(const GradingInput& grading, double solid_volume, Rng& rng) {
+std::vector<double> draw_sizes(const GradingInput& grading, const Space& space, double solid_volume,
+                               Rng& rng) {
   std::vector<double> sizes;
   for (std::size_t band = 1; band < grading.sieves.size(); ++band) {
     const double share = (grading.passing[band] - grading.passing[band - 1]) * solid_volume;
     double volume = 0;
     while (volume < share) {
       const double size = rng.uniform(grading.sieves[band - 1], grading.sieves[band]);
-      const double more = ball_volume(size);
+      const double more = space.volume_of_size(size);
       if (volume + more - share > share - volume) break;
       volume += more;
       sizes.push_back(size);
@@ -38,26 +29,29 @@ double smallest_size(const GradingInput& grading) {
   return grading.sieves[static_cast<std::size_t>(band - grading.passing.begin())];
 }
 
-double scale_to_size(const GradingInput& grading, const ClumpTemplate& stone, double size) {
+double scale_to_size(const GradingInput& grading, const Space& space, const ClumpTemplate& stone,
+                     double size) {
   if (grading.size == "sieve") return size / stone.sieve_size;
-  return size / std::cbrt(6.0 * stone.volume / std::numbers::pi);
+  return size / space.size_of_volume(stone.volume);
 }
 
-std::vector<double> passing(const GradingInput& grading, const std::vector<double>& sizes) {
+std::vector<double> passing(const GradingInput& grading, const Space& space,
+                            const std::vector<double>& sizes) {
   std::vector<double> shares;
   double all = 0;
-  for (double size : sizes) all += ball_volume(size);
+  for (double size : sizes) all += space.volume_of_size(size);
   for (double sieve : grading.sieves) {
     double below = 0;
     for (double size : sizes)
-      if (size < sieve) below += ball_volume(size);
+      if (size < sieve) below += space.volume_of_size(size);
     shares.push_back(all > 0 ? below / all : 0);
   }
   return shares;
 }
 
-std::vector<Result> passing_results(const GradingInput& grading, const std::vector<double>& sizes) {
-  const std::vector<double> shares = passing(grading, sizes);
+std::vector<Result> passing_results(const GradingInput& grading, const Space& space,
+                                    const std::vector<double>& sizes) {
+  const std::vector<double> shares = passing(grading, space, sizes);
   std::vector<Result> results;
   for (std::size_t k = 0; k < shares.size(); ++k)
     results.push_back({fmt::format("passing_{:g}_mm", 1e3 * grading.sieves[k]), shares[k], Dimension::none});

@@ -1,8 +1,5 @@
 #include "lab/in_touch.h"
 
-#include <cmath>
-#include <numbers>
-
 #include "dem/touching.h"
 
 namespace trackbed {
@@ -40,17 +37,17 @@ std::vector<StoneContacts> contacts_of_stones(const Simulation& sim) {
     stones[static_cast<Index>(t.clump_1)].mean_stress += force.dot(t.lever_1);
     if (t.clump_2 >= 0) stones[static_cast<Index>(t.clump_2)].mean_stress -= force.dot(t.lever_2);
   });
-  for (Index c = 0; c < stones.size(); ++c) stones[c].mean_stress /= 3.0 * volume_of(sim, c);
+  for (Index c = 0; c < stones.size(); ++c)
+    stones[c].mean_stress /= sim.model.space.dimensions() * volume_of(sim, c);
   return stones;
 }
 
 double volume_of(const Simulation& sim, std::size_t clump) {
-  const Clumps& c = sim.state.clumps;
-  return sim.model.templates[static_cast<Index>(c.shape[clump])].volume * std::pow(c.scale[clump], 3);
+  return trackbed::volume_of(sim.model, sim.state.clumps, clump);
 }
 
 double equal_volume_radius(const Simulation& sim, std::size_t clump) {
-  return std::cbrt(0.75 * volume_of(sim, clump) / std::numbers::pi);
+  return trackbed::equal_volume_radius(sim.model, sim.state.clumps, clump);
 }
 
 }  // namespace trackbed

@@ -20,15 +20,17 @@ std::vector<BodyPair> pairs_in_touch(const Simulation& sim);
 
 /// What touches one stone.
 struct StoneContacts {
-  int neighbours = 0;      // stones, walls and bodies
-  int contacts = 0;        // of its pebbles
-  double mean_stress = 0;  // a third of the trace of sum(force x lever) / volume, compression positive [Pa]
+  int neighbours = 0;  // stones, walls and bodies
+  int contacts = 0;    // of its pebbles
+  double mean_stress =
+      0;  // trace of sum(force x lever) / volume over the dimensions, compression positive [Pa]
 };
 
 /// One entry a stone.
 std::vector<StoneContacts> contacts_of_stones(const Simulation& sim);
 
-double volume_of(const Simulation& sim, std::size_t clump);            ///< of a stone [m^3]
-double equal_volume_radius(const Simulation& sim, std::size_t clump);  ///< of the ball of that volume [m]
+double volume_of(const Simulation& sim, std::size_t clump);  ///< of a stone [m^3]
+double equal_volume_radius(const Simulation& sim,
+                           std::size_t clump);  ///< of the ball or disc of that volume [m]
 
 }  // namespace trackbed

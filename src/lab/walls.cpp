@@ -30,7 +30,8 @@ void declare(Fields& f, PlaneInput& in) {
   f.check(in.normal.norm() > 0, "normal", "the normal is zero", "give a vector such as [0, 0, 1]");
 }
 
-/// Five unbounded planes: a floor at z = 0 and four sides, open above. Stones are never lost over a rim.
+/// Five unbounded planes: a floor at z = 0 and four sides, open above; in two dimensions three. Stones are
+/// never lost over a rim.
 struct BoxInput : WallInput {
   Vec3 size = Vec3::Zero();
 
@@ -39,14 +40,18 @@ struct BoxInput : WallInput {
     add_side(sim, name + ".floor", material_index, {Vec3::Zero(), Vec3::UnitZ()}, {x, y});
     add_side(sim, name + ".left", material_index, {Vec3(-x, 0, z / 2), Vec3::UnitX()}, {z / 2, y});
     add_side(sim, name + ".right", material_index, {Vec3(x, 0, z / 2), -Vec3::UnitX()}, {z / 2, y});
-    add_side(sim, name + ".front", material_index, {Vec3(0, -y, z / 2), Vec3::UnitY()}, {x, z / 2});
-    add_side(sim, name + ".back", material_index, {Vec3(0, y, z / 2), -Vec3::UnitY()}, {x, z / 2});
+    if (!sim.model.space.is_plane()) add_ends(sim, name, material_index);
     sim.container.extend(Vec3(-x, -y, 0));
     sim.container.extend(Vec3(x, y, z));
   }
   bool is_container() const override { return true; }
 
  private:
+  void add_ends(Simulation& sim, const std::string& name, int material_index) const {
+    const double x = 0.5 * size.x(), y = 0.5 * size.y(), z = size.z();
+    add_side(sim, name + ".front", material_index, {Vec3(0, -y, z / 2), Vec3::UnitY()}, {x, z / 2});
+    add_side(sim, name + ".back", material_index, {Vec3(0, y, z / 2), -Vec3::UnitY()}, {x, z / 2});
+  }
   struct Side {
     Vec3 middle, normal;
   };

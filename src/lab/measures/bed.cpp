@@ -82,7 +82,9 @@ class Surface {
 }  // namespace
 
 double bed_surface(const Simulation& sim, const Eigen::AlignedBox2d& where) {
-  Surface surface(where);
+  Eigen::AlignedBox2d lines = where;
+  if (sim.model.space.is_plane()) lines.min().y() = lines.max().y() = 0;  // discs reach through the thickness
+  Surface surface(lines);
   const Clumps& c = sim.state.clumps;
   for (Index i = 0; i < c.id.size(); ++i) {
     for (const Pebble& pebble : sim.model.templates[static_cast<Index>(c.shape[i])].pebbles) {
@@ -162,7 +164,8 @@ double pebble_volume(const Simulation& sim) {
   const Clumps& c = sim.state.clumps;
   double sum = 0;
   for (Index i = 0; i < c.id.size(); ++i)
-    sum += sim.model.templates[static_cast<Index>(c.shape[i])].pebble_volume * std::pow(c.scale[i], 3);
+    sum += sim.model.templates[static_cast<Index>(c.shape[i])].pebble_volume *
+           sim.model.space.growth_of_volume(c.scale[i]);
   return sum;
 }
 
@@ -191,7 +194,7 @@ BedStress bed_stress(const Simulation& sim) {
   visit_touching(sim.model, sim.state, [&](const Touching& t) {
     const Vec3 branch = t.clump_2 >= 0 ? Vec3(t.lever_1 - t.lever_2) : t.lever_1;
     const double along = branch.dot(t.normal);
-    stress.mean += t.force().dot(branch) / (3.0 * stress.volume);
+    stress.mean += t.force().dot(branch) / (sim.model.space.dimensions() * stress.volume);
     stress.stiffness += t.properties->kn * along * along;
   });
   return stress;

@@ -97,13 +97,15 @@ class Adjust : public Stage {
   static double stress_of_weight(const Simulation& sim) {
     constexpr double k0 = 0.4;
     const Vec3 size = sim.container.sizes();
-    return (1.0 + 2.0 * k0) / 3.0 * 0.5 * weight(sim) / (size.x() * size.y());
+    const int n = sim.model.space.dimensions();
+    return (1.0 + (n - 1) * k0) / n * 0.5 * weight(sim) / (size.x() * size.y());
   }
 
   void change_sizes(Simulation& sim, const BedStress& now) {
     constexpr double relaxation = 0.5, most_growth = 1e-3, most_loss = 2e-3;
-    const double beta = std::clamp(relaxation * 3.0 * now.volume * (target_ - now.mean) / now.stiffness,
-                                   -most_loss, most_growth);
+    const double beta = std::clamp(
+        relaxation * sim.model.space.dimensions() * now.volume * (target_ - now.mean) / now.stiffness,
+        -most_loss, most_growth);
     if (std::abs(factor_ * (1.0 + beta) - 1.0) > in_.largest_factor)
       fail(now, fmt::format("with sizes changed by {:+.2f} %", 100 * (factor_ - 1.0)));
     factor_ *= 1.0 + beta;

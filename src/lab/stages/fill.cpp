@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <optional>
 #include <unordered_map>
 
@@ -28,7 +26,7 @@ struct FillInput : StageInput {
   /// Of the stones that fill the container [m], the largest first.
   std::vector<double> sizes(const StonesInput& stones, const Simulation& sim) const {
     Rng rng(sim.seed, "sizes");
-    return draw_sizes(stones.grading, (1.0 - porosity) * sim.container.volume(), rng);
+    return draw_sizes(stones.grading, sim.model.space, (1.0 - porosity) * sim.container.volume(), rng);
   }
   void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override;
   std::unique_ptr<Stage> make(const CaseInput& experiment) const override;
@@ -55,7 +53,7 @@ class Fill : public Stage {
     set_ = sim.stone_set(in_.set);
     sizes_ = in_.sizes(stones_, sim);
     double volume = 0;
-    for (double size : sizes_) volume += std::numbers::pi / 6.0 * size * size * size;
+    for (double size : sizes_) volume += sim.model.space.volume_of_size(size);
     const Vec3 extent = sim.container.sizes();
     column_ = sim.container;
     column_.max().z() =
@@ -69,10 +67,10 @@ class Fill : public Stage {
 
   bool finished(const Simulation&) override { return true; }
 
-  std::vector<Result> close(Simulation&) override {
+  std::vector<Result> close(Simulation& sim) override {
     std::vector<Result> results{{"added", static_cast<double>(sizes_.size()), Dimension::none},
                                 {"column_height", column_.sizes().z(), Dimension::length}};
-    for (const Result& r : passing_results(stones_.grading, sizes_)) results.push_back(r);
+    for (const Result& r : passing_results(stones_.grading, sim.model.space, sizes_)) results.push_back(r);
     return results;
   }
   void archive(Archive& a) override { a(sizes_, column_); }
@@ -84,7 +82,8 @@ class Fill : public Stage {
     double bound = 0;
     for (int shape = set_.first; shape < set_.first + set_.count; ++shape) {
       const ClumpTemplate& t = sim.model.templates[static_cast<std::size_t>(shape)];
-      bound = std::max(bound, t.bounding_radius * scale_to_size(stones_.grading, t, sizes_.front()));
+      bound = std::max(
+          bound, t.bounding_radius * scale_to_size(stones_.grading, sim.model.space, t, sizes_.front()));
     }
     const Clumps& there = sim.state.clumps;  // from an earlier stage
     for (std::size_t c = 0; c < there.id.size(); ++c)
@@ -120,16 +119,17 @@ class Fill : public Stage {
   void place(Simulation& sim, double size, Rng& rng) {
     const int shape = set_.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set_.count)));
     const ClumpTemplate& stone_shape = sim.model.templates[static_cast<std::size_t>(shape)];
-    const double scale = scale_to_size(stones_.grading, stone_shape, size);
+    const double scale = scale_to_size(stones_.grading, sim.model.space, stone_shape, size);
     const int stone = add_clump(sim.model, sim.state, shape, scale, set_.material, {});
     Clumps& c = sim.state.clumps;
     const auto k = static_cast<std::size_t>(stone);
     constexpr int tries_before_growth = 500;
     for (int tries = 1;; ++tries) {
-      c.position[k] = {rng.uniform(column_.min().x(), column_.max().x()),
-                       rng.uniform(column_.min().y(), column_.max().y()),
-                       rng.uniform(column_.min().z(), column_.max().z())};
-      c.orientation[k] = rng.rotation();
+      const double x = rng.uniform(column_.min().x(), column_.max().x()),
+                   y = rng.uniform(column_.min().y(), column_.max().y()),
+                   z = rng.uniform(column_.min().z(), column_.max().z());
+      c.position[k] = sim.model.space.nearest({x, y, z});
+      c.orientation[k] = sim.model.space.turn(rng);
       if (is_free(sim, stone)) break;
       // No room: a higher column.
       if (tries % tries_before_growth == 0) column_.max().z() += 0.05 * column_.sizes().z();
@@ -161,8 +161,7 @@ void FillInput::check(const Document& document, const CaseInput& experiment, con
     document.fail(here + ".kind", "a column of stones cannot fall into a closed container",
                   "use the stage scatter, which places stones inside");
   const double largest = experiment.stones.grading.sieves.back();
-  const double fewest =
-      (1.0 - porosity) * sim.container.volume() / (std::numbers::pi / 6.0 * std::pow(largest, 3));
+  const double fewest = (1.0 - porosity) * sim.container.volume() / sim.model.space.volume_of_size(largest);
   if (fewest > 1e8)
     document.fail(here, "the container takes more than a hundred million stones",
                   "check the size of the container and the sieves");

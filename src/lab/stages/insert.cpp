@@ -20,6 +20,7 @@ struct InsertInput : StageInput {
   bool held = false;
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
     check_body(document, sim, here + ".body", body);
+    if (!at.empty()) check_in_plane(document, sim, here + ".at", {at[0], at[1], 0});
   }
   bool places(const std::string& other) const override { return other == body; }
   std::unique_ptr<Stage> make(const CaseInput&) const override;

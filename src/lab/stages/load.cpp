@@ -66,6 +66,7 @@ void declare(Fields& f, LoadInput& in) {
 
 void LoadInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
   check_body(document, sim, here + ".body", body);
+  check_in_plane(document, sim, here + ".direction", direction);
   for (const OneOf<StageInput>& stage : experiment.stages) {
     if (stage.input->places(body)) return;
     if (stage.input.get() == this) break;

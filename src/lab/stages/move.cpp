@@ -41,6 +41,7 @@ void declare(Fields& f, MoveInput& in) {
 }
 
 void MoveInput::check(const Document& document, const CaseInput&, const Simulation& sim) const {
+  check_in_plane(document, sim, here + ".velocity", velocity);
   const int number = sim.find_wall(wall);
   const bool is_body = number >= 0 && sim.model.walls[static_cast<std::size_t>(number)].body;
   if (!is_body) return check_wall(document, sim, here + ".wall", wall);

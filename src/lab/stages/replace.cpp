@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <tuple>
 
 #include "base/rng.h"
@@ -49,9 +48,12 @@ class Replace : public Stage {
       const auto k = static_cast<std::size_t>(clump);
       if (!in_.where.contains(sim, c.position[k])) continue;
       const int shape = set.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set.count)));
-      const auto volume = [&](int t) { return sim.model.templates[static_cast<std::size_t>(t)].volume; };
-      stones.push_back({clump, shape, c.scale[k] * std::cbrt(volume(c.shape[k]) / volume(shape)),
-                        set.material, Quat::Identity()});
+      const Space& space = sim.model.space;
+      const auto size = [&](int t) {
+        return space.size_of_volume(sim.model.templates[static_cast<std::size_t>(t)].volume);
+      };
+      stones.push_back(
+          {clump, shape, c.scale[k] * size(c.shape[k]) / size(shape), set.material, Quat::Identity()});
       if (find_orientation(sim, stones.back(), rng)) continue;
       stones.pop_back();
       ++left_;
@@ -91,7 +93,7 @@ class Replace : public Stage {
     c.scale[k] = stone.scale;
     bool is_clear = false, is_possible = false;
     for (int tries = 0; tries < most_tries && !is_clear; ++tries) {
-      c.orientation[k] = rng.rotation();
+      c.orientation[k] = sim.model.space.turn(rng);
       is_clear = is_clear_of_walls(sim, stone.clump, 0);
       if (!is_clear && (is_possible || !is_clear_of_walls(sim, stone.clump, 0, Walls::of_triangles)))
         continue;

@@ -29,7 +29,7 @@ struct ScatterInput : StageInput {
   std::vector<double> sizes(const CaseInput& experiment, const Simulation& sim) const {
     Rng rng = numbers(sim, "sizes");
     const double room = volume_in(sim.container, [&](const Vec3& point) { return is_room(sim, point); });
-    return draw_sizes(experiment.stones.grading, (1.0 - porosity) * room, rng);
+    return draw_sizes(experiment.stones.grading, sim.model.space, (1.0 - porosity) * room, rng);
   }
   void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override {
     if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
@@ -77,7 +77,8 @@ class Scatter : public Stage {
     std::vector<Result> results{{"added", static_cast<double>(sizes_.size()), Dimension::none},
                                 {"time", parting_.time(sim), Dimension::time},
                                 {"mean_overlap", parting_.overlaps().mean, Dimension::none}};
-    for (const Result& r : passing_results(experiment_.stones.grading, sizes_)) results.push_back(r);
+    for (const Result& r : passing_results(experiment_.stones.grading, sim.model.space, sizes_))
+      results.push_back(r);
     return results;
   }
   void archive(Archive& a) override { a(sizes_, parting_); }
@@ -85,14 +86,14 @@ class Scatter : public Stage {
  private:
   void place(Simulation& sim, const StoneSet& set, double size, Rng& rng) const {
     const int shape = set.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set.count)));
-    const double scale =
-        scale_to_size(experiment_.stones.grading, sim.model.templates[static_cast<std::size_t>(shape)], size);
+    const double scale = scale_to_size(experiment_.stones.grading, sim.model.space,
+                                       sim.model.templates[static_cast<std::size_t>(shape)], size);
     const int stone = add_clump(sim.model, sim.state, shape, scale, set.material, {});
     const auto k = static_cast<std::size_t>(stone);
     for (int tries = 0; tries < 10'000; ++tries) {
-      sim.state.clumps.position[k] =
-          point_in(sim.container, rng, [&](const Vec3& point) { return in_.is_room(sim, point); });
-      sim.state.clumps.orientation[k] = rng.rotation();
+      sim.state.clumps.position[k] = sim.model.space.nearest(
+          point_in(sim.container, rng, [&](const Vec3& point) { return in_.is_room(sim, point); }));
+      sim.state.clumps.orientation[k] = sim.model.space.turn(rng);
       if (is_clear_of_walls(sim, stone, 0)) return;
     }
     throw InputError(

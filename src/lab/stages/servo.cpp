@@ -15,6 +15,7 @@ struct ServoInput : StageInput {
   double duration = 0;  // [s]
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
     check_wall(document, sim, here + ".wall", wall);
+    check_in_plane(document, sim, here + ".direction", direction);
   }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };

@@ -21,7 +21,7 @@ double volume_of(const std::vector<double>& sizes) {
 double volume_for(const GradingInput& grading, double n) {
   Rng rng(9, "trial");
   const double trial = 0.1;
-  return trial * n / static_cast<double>(draw_sizes(grading, trial, rng).size());
+  return trial * n / static_cast<double>(draw_sizes(grading, Space{}, trial, rng).size());
 }
 
 TEST(Grading, TwoThousandStonesPassAsAskedWithinOnePercent) {
@@ -31,12 +31,12 @@ TEST(Grading, TwoThousandStonesPassAsAskedWithinOnePercent) {
     for (std::uint64_t seed : {1, 2, 3}) {
       Rng rng(seed, "grading");
       const double volume = volume_for(grading, 2000);
-      const std::vector<double> sizes = draw_sizes(grading, volume, rng);
+      const std::vector<double> sizes = draw_sizes(grading, Space{}, volume, rng);
       EXPECT_NEAR(static_cast<double>(sizes.size()), 2000, 200);
       EXPECT_NEAR(volume_of(sizes) / volume, 1, 0.01);
       EXPECT_TRUE(std::is_sorted(sizes.rbegin(), sizes.rend()));
       EXPECT_GE(sizes.back(), smallest_size(grading));
-      const std::vector<double> shares = passing(grading, sizes);
+      const std::vector<double> shares = passing(grading, Space{}, sizes);
       for (std::size_t k = 0; k < shares.size(); ++k) EXPECT_NEAR(shares[k], grading.passing[k], 0.01) << k;
     }
 }
@@ -54,7 +54,7 @@ TEST(Grading, TheSameInMillimetresAndMetres) {
     for (const std::string& text : texts)
       grading.sieves.push_back(std::get<double>(parse_quantity(text, Dimension::length)));
     Rng rng(4, "grading");
-    return draw_sizes(grading, 0.05, rng);
+    return draw_sizes(grading, Space{}, 0.05, rng);
   };
   const auto mm = with_sieves({"22.4 mm", "31.5 mm", "40 mm", "50 mm", "63 mm"});
   const auto m = with_sieves({"0.0224 m", "0.0315 m", "0.04 m", "0.05 m", "0.063 m"});
@@ -66,9 +66,9 @@ TEST(Grading, ScaleGivesTheSizeAsItIsMeasured) {
   ClumpTemplate stone = make_ball_template(0.01);
   stone.sieve_size = 0.016;
   GradingInput grading;
-  EXPECT_NEAR(scale_to_size(grading, stone, 0.04), 2, 1e-14);
+  EXPECT_NEAR(scale_to_size(grading, Space{}, stone, 0.04), 2, 1e-14);
   grading.size = "sieve";
-  EXPECT_NEAR(scale_to_size(grading, stone, 0.04), 2.5, 1e-14);
+  EXPECT_NEAR(scale_to_size(grading, Space{}, stone, 0.04), 2.5, 1e-14);
 }
 
 }  // namespace
