@@ -30,7 +30,8 @@ void write_failure(const Member& member, const std::string& cause, const std::fi
 /// The keys in which two resolved inputs differ, "stones.ratio: 0.3 -> 0.4"; the first few.
 std::string difference(const nlohmann::ordered_json& before, const nlohmann::ordered_json& after);
 
-/// Value of a measure of a summary; nothing when it has none.
+/// Value of a measure of a summary, at the end of the run or, as "STAGE.MEASURE", at the end of a stage;
+/// nothing when it has none.
 std::optional<double> measure_in(const nlohmann::ordered_json& summary, const std::string& name);
 
 /// study.csv: a row a member with every changed key, seed, status, measures with units, seconds and state
