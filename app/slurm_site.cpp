@@ -219,6 +219,7 @@ void SlurmSite::start(std::deque<Job>& waiting) {
   }
   waiting = std::move(later);
   for (const auto& [job, n] : found) fmt::print("Slurm job {}: {} members of an earlier call\n", job, n);
+  std::fflush(stdout);
   if (!now.empty()) submit(std::move(now));
 }
 

@@ -17,7 +17,7 @@ case ${1:-} in
     victims=()
     [[ ! -s $TRACKBED_SLURM/slurmd.pid ]] || victims+=("$(cat "$TRACKBED_SLURM/slurmd.pid")")
     for process in $(pgrep -x slurmstepd || true); do
-      grep -qz "^SLURM_CONF=$SLURM_CONF$" "/proc/$process/environ" && victims+=($(tree_of "$process"))
+      grep -qz "^SLURM_CONF=$SLURM_CONF$" "/proc/$process/environ" 2>/dev/null && victims+=($(tree_of "$process"))
     done
     ((${#victims[@]} == 0)) || kill -9 "${victims[@]}" 2>/dev/null || true
     ;;

@@ -59,7 +59,9 @@ SelectTypeParameters=CR_CPU
 ReturnToService=2
 SlurmdTimeout=6
 KillWait=2
-NodeName=$(hostname -s) NodeAddr=127.0.0.1 Port=16818 CPUs=$(nproc) State=UNKNOWN
+# every processor is one to Slurm, also where two share a core
+SlurmdParameters=config_overrides
+NodeName=$(hostname -s) NodeAddr=127.0.0.1 Port=16818 CoresPerSocket=$(nproc) ThreadsPerCore=1 State=UNKNOWN
 PartitionName=main Nodes=ALL Default=YES MaxTime=INFINITE State=UP
 END
 mkdir "$folder/state" "$folder/spool"

@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <thread>
 
@@ -35,7 +36,7 @@ class StudyCommand : public testing::Test {
 
   int run(const std::string& out, std::vector<std::string> options = {}) const {
     options.insert(options.end(), {"--jobs", "2"});
-    return StudyProcess(TRACKBED_PROGRAM, folder_.path, out, options).wait();
+    return StudyProcess(TRACKBED_PROGRAM, folder_.path / "study.toml", folder_.path / out, options).wait();
   }
   std::string messages() const { return read_file(folder_.path / "messages.txt"); }
 
@@ -52,7 +53,8 @@ void StudyCommand::expect_the_same_when_killed(int kills, int longest_ms) {
   int done = 0;
   for (int studies = 0; done < kills && studies < 10 * kills; ++studies) {
     // What three kills have stopped is given up: it is tried again.
-    StudyProcess study_process(TRACKBED_PROGRAM, folder_.path, "killed", {"--jobs", "2", "--retry"});
+    StudyProcess study_process(TRACKBED_PROGRAM, folder_.path / "study.toml", killed,
+                               {"--jobs", "2", "--retry"});
     while (done < kills && !study_process.has_ended()) {
       std::this_thread::sleep_for(
           std::chrono::milliseconds(1 + rng.index(static_cast<std::uint64_t>(longest_ms))));
@@ -133,6 +135,27 @@ TEST_F(StudyCommand, AddsSeedsUntilTheIntervalIsNarrow) {
   EXPECT_EQ(run("wide", {"--repeat-until", "contacts < 100 %"}), 0) << messages();
   EXPECT_FALSE(fs::exists(folder_.path / "wide/members/friction_0.5-seed-4"));
   EXPECT_EQ(run("wrong", {"--repeat-until", "contacts"}), 2);
+}
+
+TEST_F(StudyCommand, ChangesTheCaseInAllMembersButNotWhatTheStudyChanges) {
+  EXPECT_EQ(run("out", {"--repeats", "1", "--set", "stages.fill.porosity=0.6"}), 0) << messages();
+  const std::string summary = read_file(folder_.path / "out/members/friction_0.5-seed-1/summary.json");
+  EXPECT_NE(summary.find("\"porosity\": 0.6"), std::string::npos) << summary;
+  EXPECT_FALSE(fs::exists(folder_.path / "out/members/friction_0.5-seed-2"));
+  EXPECT_EQ(run("out", {"--set", "materials.ballast.friction=0.3"}), 2);
+  EXPECT_NE(messages().find("the study itself changes materials.ballast.friction"), std::string::npos);
+  EXPECT_EQ(run("out", {"--set", "seed=3"}), 2);
+}
+
+TEST_F(StudyCommand, SaysThatThereIsNoSlurm) {
+  EXPECT_EQ(run("out", {"--sbatch=--mem=1G"}), 2);
+  EXPECT_NE(messages().find("--sbatch is for --on slurm only"), std::string::npos) << messages();
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder_.path.c_str(), 1);
+  EXPECT_EQ(run("out", {"--on", "slurm"}), 2);
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(messages().find("--on slurm: there is no sbatch on this machine"), std::string::npos)
+      << messages();
 }
 
 }  // namespace

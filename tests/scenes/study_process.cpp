@@ -37,10 +37,9 @@ kind = "fill"
 kind = "settle"
 )toml";
 
-StudyProcess::StudyProcess(const std::string& program, const std::filesystem::path& folder,
-                           const std::string& out, const std::vector<std::string>& options) {
-  std::vector<std::string> words{program, "study", (folder / "study.toml").string(), "--out",
-                                 (folder / out).string()};
+StudyProcess::StudyProcess(const std::string& program, const std::filesystem::path& file,
+                           const std::filesystem::path& out, const std::vector<std::string>& options) {
+  std::vector<std::string> words{program, "study", file.string(), "--out", out.string()};
   words.insert(words.end(), options.begin(), options.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -48,7 +47,7 @@ StudyProcess::StudyProcess(const std::string& program, const std::filesystem::pa
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   for (int stream : {STDOUT_FILENO, STDERR_FILENO})
-    ::posix_spawn_file_actions_addopen(&actions, stream, (folder / "messages.txt").c_str(),
+    ::posix_spawn_file_actions_addopen(&actions, stream, (out.parent_path() / "messages.txt").c_str(),
                                        O_WRONLY | O_CREAT | O_APPEND, 0644);
   const int failed = ::posix_spawn(&process_, program.c_str(), &actions, nullptr, argv.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);

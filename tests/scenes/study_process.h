@@ -14,10 +14,9 @@ extern const char* const balls_in_a_box;
 
 class StudyProcess {
  public:
-  /// Starts PROGRAM study FOLDER/study.toml --out FOLDER/OUT OPTIONS...; its messages are added to
-  /// FOLDER/messages.txt.
-  StudyProcess(const std::string& program, const std::filesystem::path& folder, const std::string& out,
-               const std::vector<std::string>& options = {});
+  /// Starts PROGRAM study FILE --out OUT OPTIONS...; its messages are added to messages.txt beside OUT.
+  StudyProcess(const std::string& program, const std::filesystem::path& file,
+               const std::filesystem::path& out, const std::vector<std::string>& options = {});
   ~StudyProcess();  ///< kills it if nobody waited for it
   StudyProcess(const StudyProcess&) = delete;
   StudyProcess& operator=(const StudyProcess&) = delete;

@@ -38,6 +38,10 @@ class SlurmStudy : public testing::Test {
     write_file(folder_.path / "case.toml", balls_in_a_box);
     write_study("");
   }
+  void TearDown() override {
+    shell("scancel --user=$(id -un)");
+    comes_true([] { return shell("squeue --noheader --me | grep .") != 0; });
+  }
   void write_study(const std::string& further) const {
     write_file(
         folder_.path / "study.toml",
@@ -57,10 +61,13 @@ class SlurmStudy : public testing::Test {
   }
   [[nodiscard]] StudyProcess start(const std::string& out, std::vector<std::string> options = {}) const {
     options.insert(options.end(), {"--on", "slurm"});
-    return StudyProcess(TRACKBED_PROGRAM, folder_.path, out, options);
+    return {TRACKBED_PROGRAM, folder_.path / "study.toml", folder_.path / out, options};
   }
   int run(const std::string& out, const std::vector<std::string>& options = {}) const {
     return start(out, options).wait();
+  }
+  int run_here(const std::string& out) const {
+    return StudyProcess(TRACKBED_PROGRAM, folder_.path / "study.toml", folder_.path / out).wait();
   }
   std::string messages() const { return read_file(folder_.path / "messages.txt"); }
   std::string rows(const std::string& out) const { return read_file(folder_.path / out / "study.csv"); }
@@ -82,7 +89,7 @@ class SlurmStudy : public testing::Test {
 
 TEST_F(SlurmStudy, GivesTheSameBitsAsHere) {
   ASSERT_EQ(run("there"), 0) << messages();
-  ASSERT_EQ(StudyProcess(TRACKBED_PROGRAM, folder_.path, "here").wait(), 0) << messages();
+  ASSERT_EQ(run_here("here"), 0) << messages();
   EXPECT_EQ(members_of(folder_.path / "there"), members_of(folder_.path / "here"));
   EXPECT_EQ(read_file(folder_.path / "there/table.csv"), read_file(folder_.path / "here/table.csv"));
 }
@@ -128,7 +135,7 @@ TEST_F(SlurmStudy, GoesOnWaitingForItsArrayAfterItWasKilled) {
   StudyProcess second = start("out", {"--repeats", "1"});
   ASSERT_TRUE(comes_true([&] { return messages().find("members of an earlier call") != std::string::npos; }))
       << messages();
-  EXPECT_EQ(StudyProcess(TRACKBED_PROGRAM, folder_.path, "out").wait(), 2);  // not here while it runs there
+  EXPECT_EQ(run_here("out"), 2);  // not here while it runs there
   second.kill();
   // What ends while nobody waits is collected as well.
   shell("scancel " + job + "_1");
@@ -170,7 +177,7 @@ TEST_F(SlurmStudy, OutlivesANodeThatGoesDownAndComesBack) {
   EXPECT_NE(rows("out").find("case-seed-1,case,1,waiting"), std::string::npos) << rows("out");
   shell(node + "start");
   EXPECT_EQ(study.wait(), 0) << messages() << rows("out");
-  ASSERT_EQ(StudyProcess(TRACKBED_PROGRAM, folder_.path, "here").wait(), 0);
+  ASSERT_EQ(run_here("here"), 0);
   EXPECT_EQ(members_of(folder_.path / "out"), members_of(folder_.path / "here"));
 }
 
