@@ -16,7 +16,7 @@ for program in munged mungekey slurmctld slurmd sbatch squeue scancel; do
 done
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
-folder=$(mktemp -d /tmp/trackbed-slurm-XXXXXX)
+folder=$(mktemp --directory --tmpdir trackbed-slurm-XXXXXX)
 export TRACKBED_SLURM=$folder SLURM_CONF=$folder/slurm.conf
 chmod 755 "$folder"
 take_down() {

@@ -181,6 +181,16 @@ TEST_F(SlurmStudy, OutlivesANodeThatGoesDownAndComesBack) {
   EXPECT_EQ(members_of(folder_.path / "out"), members_of(folder_.path / "here"));
 }
 
+TEST_F(SlurmStudy, WaitsForASlurmThatDoesNotAnswer) {
+  StudyProcess study = start("out");
+  ASSERT_TRUE(comes_true([&] { return messages().find("submitted") != std::string::npos; }));
+  shell("kill $(cat $TRACKBED_SLURM/slurmctld.pid)");
+  EXPECT_TRUE(
+      comes_true([&] { return messages().find("Slurm does not answer, waiting") != std::string::npos; }));
+  shell("slurmctld");
+  EXPECT_EQ(study.wait(), 0) << messages();
+}
+
 TEST_F(SlurmStudy, TellsWhatSlurmRefuses) {
   EXPECT_EQ(run("out", {"--sbatch=--partition=nowhere"}), 2);
   EXPECT_NE(messages().find("invalid partition specified: nowhere"), std::string::npos) << messages();
