@@ -2,7 +2,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,8 +11,6 @@
 #include <stdexcept>
 
 #include "io/files.h"
-
-extern char** environ;
 
 namespace trackbed {
 namespace {
@@ -44,14 +42,20 @@ StudyProcess::StudyProcess(const std::string& program, const std::filesystem::pa
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  for (int stream : {STDOUT_FILENO, STDERR_FILENO})
-    ::posix_spawn_file_actions_addopen(&actions, stream, (out.parent_path() / "messages.txt").c_str(),
-                                       O_WRONLY | O_CREAT | O_APPEND, 0644);
-  const int failed = ::posix_spawn(&process_, program.c_str(), &actions, nullptr, argv.data(), environ);
-  ::posix_spawn_file_actions_destroy(&actions);
-  if (failed != 0) throw std::runtime_error("cannot be started: " + program);
+  const std::string messages = out.parent_path() / "messages.txt";
+  const int log = ::open(messages.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  const pid_t parent = ::getpid();
+  process_ = ::fork();
+  if (process_ != 0) {
+    ::close(log);
+    if (process_ < 0) throw std::runtime_error("cannot be started: " + program);
+    return;
+  }
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // nothing stays behind when the test is killed
+  ::dup2(log, STDOUT_FILENO);
+  ::dup2(log, STDERR_FILENO);
+  if (::getppid() == parent) ::execv(program.c_str(), argv.data());
+  ::_exit(127);
 }
 
 StudyProcess::~StudyProcess() {
