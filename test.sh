@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Builds Trackbed and runs its tests.
 #   ./test.sh [--long] [PRESET]    PRESET: release (default), debug, asan-ubsan, tsan
-#   --long    also the tests that take minutes (label "long")
+#   --long    also the tests that take minutes (labels "long" and "slurm")
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd -P)
 preset=release
-selection=(--label-exclude '^long$')
+selection=(--label-exclude '^(long|slurm)$')
 for argument in "$@"; do
   case $argument in
     --long) selection=() ;;

@@ -29,9 +29,13 @@ struct Options {
   std::filesystem::path out = ".";
   int generate = 0;
   std::uint64_t seed = 1;
-  bool convex = false;
+  bool convex = false, enlarge = false;
 
-  ClumpFilling filling() const { return {distance * std::numbers::pi / 180, ratio, max_pebbles}; }
+  ClumpFilling filling() const {
+    ClumpFilling filling{distance * std::numbers::pi / 180, ratio, max_pebbles};
+    filling.enlarge = enlarge;
+    return filling;
+  }
 };
 
 void declare(CLI::App& app, Options& o) {
@@ -42,6 +46,7 @@ void declare(CLI::App& app, Options& o) {
   app.add_option("--ratio", o.ratio, "smallest pebble over largest, above 0 to 1: more is coarser")
       ->capture_default_str();
   app.add_option("--max-pebbles", o.max_pebbles, "stop there; 0 for no limit")->capture_default_str();
+  app.add_flag("--enlarge", o.enlarge, "enlarge the pebbles together to the volume of the stone");
   app.add_option("--unit", o.unit, "unit of the files")
       ->check(CLI::IsMember({"m", "cm", "mm"}))
       ->capture_default_str();

@@ -10,6 +10,8 @@
 #include <csignal>
 #include <deque>
 #include <map>
+#include <memory>
+#include <set>
 #include <thread>
 
 #include "base/error.h"
@@ -18,7 +20,8 @@
 #include "io/files.h"
 #include "io/progress.h"
 #include "lab/study/results.h"
-#include "workers.h"
+#include "local_site.h"
+#include "slurm_site.h"
 
 namespace trackbed {
 namespace {
@@ -30,7 +33,8 @@ volatile std::sig_atomic_t stop_asked = 0;
 
 struct StudyOptions {
   fs::path file, out;
-  std::string until;
+  std::string until, on = "here";
+  std::vector<std::string> sbatch;
   int jobs = 0, threads = 1, most_repeats = 20;
   bool retry = false;
 };
@@ -63,14 +67,17 @@ Goal goal_of(const std::string& text) {
   return goal;
 }
 
-/// Keeps a second study out of the folder while this one lives.
+/// Keeps a second study out of the folder while this one lives, or a process that it started and that has not
+/// noticed yet that it is gone.
 class Lock {
  public:
-  explicit Lock(const fs::path& folder)
-      : file_(::open((folder / ".lock").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0644)) {
+  explicit Lock(const fs::path& folder) : file_(::open((folder / ".lock").c_str(), O_CREAT | O_RDWR, 0644)) {
     if (file_ < 0) throw InputError(fmt::format("{}: cannot be written", folder.string()));
-    if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
-      throw InputError(fmt::format("{}: another study is at work in this folder", folder.string()));
+    for (int tries = 0; ::flock(file_, LOCK_EX | LOCK_NB) != 0; ++tries) {
+      if (tries == 50)
+        throw InputError(fmt::format("{}: another study is at work in this folder", folder.string()));
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
   }
   ~Lock() { ::close(file_); }
   Lock(const Lock&) = delete;
@@ -80,19 +87,10 @@ class Lock {
   int file_;
 };
 
-/// A number of a line "NAME:   1234 kB" of a file of /proc [kB]; 0 when there is none.
-double kilobytes_in(const fs::path& file, const std::string& name) {
-  std::error_code gone;
-  if (!fs::exists(file, gone)) return 0;
-  const std::string text = read_file(file);
-  const std::size_t at = text.find(name + ":");
-  return at == std::string::npos ? 0 : std::strtod(text.c_str() + at + name.size() + 1, nullptr);
-}
-
 class StudyRun {
  public:
-  StudyRun(const StudyOptions& options, const Document& document, StudyInput study)
-      : o_(options), study_(std::move(study)), conditions_(conditions_of(document, study_)) {
+  StudyRun(const StudyOptions& options, const Document& document, StudyInput study, Site& site)
+      : o_(options), study_(std::move(study)), conditions_(conditions_of(document, study_)), site_(site) {
     if (!o_.until.empty()) goal_ = goal_of(o_.until);
     for (Member& member : members_of(study_, conditions_)) add(std::move(member));
   }
@@ -101,35 +99,50 @@ class StudyRun {
   bool run() {
     tell_beginning();
     write_tables();
-    while (!stop_asked && (!queue_.empty() || workers_.running() > 0)) {
-      while (!queue_.empty() && workers_.running() < o_.jobs && has_memory_for_another()) start_next();
-      while (const auto ended = workers_.next_ended()) take(*ended);
+    while (!stop_asked && open() > 0) {
+      site_.start(waiting_);
+      for (const Ended& ended : site_.ended()) take(ended);
       tell_progress();
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
-    workers_.stop();
+    const std::string left = site_.leave();
     write_tables();
-    return tell_end();
+    return tell_end(left);
   }
 
  private:
-  fs::path folder_of(const Member& member) const { return o_.out / "members" / member.name; }
+  fs::path folder_of(const Member& member) const { return fs::absolute(o_.out) / "members" / member.name; }
+
+  Job job_of(const Member& member) const {
+    Job job{member.name, folder_of(member), {}, fingerprint(member)};
+    job.arguments = {"run",       fs::absolute(study_.base).string(), "--out",  job.folder.string(),
+                     "--threads", std::to_string(o_.threads),         "--quiet",
+                     "--resume"};
+    for (const std::string& change : member.set) job.arguments.insert(job.arguments.end(), {"--set", change});
+    return job;
+  }
 
   void add(Member member) {
     Outcome outcome = outcome_of(member, folder_of(member));
     if (outcome.status == MemberStatus::failed && o_.retry) outcome = {};
-    if (outcome.status == MemberStatus::waiting) queue_.push_back(members_.size());
+    if (outcome.status == MemberStatus::waiting) waiting_.push_back(job_of(member));
+    index_[member.name] = members_.size();
     members_.push_back(std::move(member));
     outcomes_.push_back(std::move(outcome));
+  }
+
+  /// Members that have not ended.
+  std::ptrdiff_t open() const {
+    return std::ranges::count(outcomes_, MemberStatus::waiting, &Outcome::status);
   }
 
   void tell_beginning() const {
     const auto count = [&](MemberStatus status) {
       return std::ranges::count(outcomes_, status, &Outcome::status);
     };
-    fmt::print("{}: {} conditions, {} members: {} done, {} failed, {} to run, {} at a time\n", study_.title,
+    fmt::print("{}: {} conditions, {} members: {} done, {} failed, {} to run\n", study_.title,
                conditions_.size(), members_.size(), count(MemberStatus::done), count(MemberStatus::failed),
-               queue_.size(), o_.jobs);
+               waiting_.size());
     std::map<std::string, int> changes;
     for (const Outcome& outcome : outcomes_)
       if (outcome.status == MemberStatus::waiting && !outcome.cause.empty()) ++changes[outcome.cause];
@@ -137,29 +150,8 @@ class StudyRun {
     std::fflush(stdout);
   }
 
-  /// The runs that are there tell what one takes.
-  bool has_memory_for_another() {
-    for (const auto& [process, member] : running_)
-      peak_ = std::max(peak_, kilobytes_in(fmt::format("/proc/{}/status", process), "VmHWM"));
-    if (running_.empty()) return true;
-    return kilobytes_in("/proc/meminfo", "MemAvailable") > 1.3 * peak_;
-  }
-
-  void start_next() {
-    const std::size_t m = queue_.front();
-    queue_.pop_front();
-    const fs::path folder = folder_of(members_[m]);
-    fs::remove_all(folder);
-    make_folder(folder);
-    std::vector<std::string> arguments{"run",       study_.base.string(),       "--out",  folder.string(),
-                                       "--threads", std::to_string(o_.threads), "--quiet"};
-    for (const std::string& change : members_[m].set) arguments.insert(arguments.end(), {"--set", change});
-    running_[workers_.start(arguments, folder / "log.txt")] = m;
-  }
-
   void take(const Ended& ended) {
-    const std::size_t m = running_.at(ended.process);
-    running_.erase(ended.process);
+    const std::size_t m = index_.at(ended.name);
     Outcome& outcome = outcomes_[m];
     if (ended.succeeded) {
       outcome = outcome_of(members_[m], folder_of(members_[m]));
@@ -167,7 +159,7 @@ class StudyRun {
         outcome = {MemberStatus::failed, "it left no summary.json", {}};
       ++finished_;
     } else if (ended.was_stopped && ++stopped_[m] < most_stops) {
-      queue_.push_back(m);  // by somebody or for want of memory: not the member's own fault
+      waiting_.push_back(job_of(members_[m]));  // by somebody or for want of memory: not its own fault
       return;
     } else if (!stop_asked) {
       outcome = {MemberStatus::failed, ended.cause, {}};
@@ -207,18 +199,18 @@ class StudyRun {
     if (now - told_ < std::chrono::seconds(terminal ? 1 : 30)) return;
     told_ = now;
     const double seconds = std::chrono::duration<double>(now - start_).count();
-    const auto left = static_cast<double>(queue_.size()) + 0.5 * workers_.running();
+    const double left = static_cast<double>(open()) - 0.5 * site_.running();
     const std::string eta = finished_ > 0 ? duration_text(seconds / finished_ * left) + " left"
                                           : std::string("no member has ended yet");
     fmt::print(stderr, "{}{} of {} members, {} running, {}{}", terminal ? "\r" : "",
-               members_.size() - queue_.size() - static_cast<std::size_t>(workers_.running()),
-               members_.size(), workers_.running(), eta, terminal ? "   " : "\n");
+               static_cast<std::ptrdiff_t>(members_.size()) - open(), members_.size(), site_.running(), eta,
+               terminal ? "   " : "\n");
   }
 
-  bool tell_end() const {
+  bool tell_end(const std::string& left) const {
     const auto failed = std::ranges::count(outcomes_, MemberStatus::failed, &Outcome::status);
     if (stop_asked) {
-      fmt::print("stopped: the same command goes on from here\n");
+      fmt::print("stopped: {}the same command goes on from here\n", left);
       return false;
     }
     if (failed > 0) fmt::print("{} members failed; --retry runs them again\n", failed);
@@ -230,51 +222,97 @@ class StudyRun {
   StudyInput study_;
   std::vector<Condition> conditions_;
   std::vector<Member> members_;
-  std::vector<Outcome> outcomes_;  // beside the members
-  std::deque<std::size_t> queue_;  // members that wait
-  std::map<pid_t, std::size_t> running_;
+  std::vector<Outcome> outcomes_;             // beside the members
+  std::map<std::string, std::size_t> index_;  // of a member by its name
+  Site& site_;
+  std::deque<Job> waiting_;
   static constexpr int most_stops = 3;
   std::map<std::size_t, int> stopped_;  // how often a signal ended a member
-  Workers workers_;
   std::optional<Goal> goal_;
-  double peak_ = 0;  // memory of the largest run so far [kB]
   int finished_ = 0;
   Clock::time_point start_ = Clock::now(), told_ = start_;
 };
 
 }  // namespace
 
+namespace {
+
+/// The case's seed and what conditions change are not for --set to change.
+void add_changes(const std::vector<std::string>& changes, const Document& document, StudyInput& study) {
+  std::set<std::string> taken{"seed"};
+  for (const Condition& condition : conditions_of(document, study))
+    for (const auto& [key, value] : condition.inputs) taken.insert(key);
+  for (const std::string& change : changes) {
+    const std::string key = change.substr(0, change.find('='));
+    if (taken.contains(key))
+      throw InputError(fmt::format("--set {}: the study itself changes {}", change, key));
+    study.set.push_back(change);
+  }
+}
+
+std::unique_ptr<Site> make_site(const StudyOptions& o) {
+  const fs::path folder = o.out / "slurm";
+  if (o.on == "slurm") return std::make_unique<SlurmSite>(folder, SlurmOptions{o.threads, o.jobs, o.sbatch});
+  const std::vector<std::string> alive = SlurmSite::jobs_alive(folder);
+  if (!alive.empty())
+    throw InputError(fmt::format("members of this study run in Slurm: go on with --on slurm, or scancel {}",
+                                 fmt::join(alive, " ")));
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const int jobs = o.jobs > 0 ? o.jobs : std::max(1, cores / o.threads);
+  if (jobs * o.threads > cores)
+    fmt::print(stderr, "{} runs of {} threads on {} cores wait for each other\n", jobs, o.threads, cores);
+  return std::make_unique<LocalSite>(jobs);
+}
+
+}  // namespace
+
 int study_command(int argc, char** argv) {
   StudyOptions o;
+  std::optional<int> repeats;
+  std::vector<std::string> changes;
   CLI::App app("Runs a case under many conditions and seeds. Called again, it goes on where it stood.",
                "trackbed study");
   app.add_option("study", o.file, "the study file (TOML)")->required();
   app.add_option("--out", o.out, "folder of the results; default: out/NAME of the study's folder");
+  app.add_option("--set", changes, "change a value of the case in all members, as in trackbed run")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+  app.add_option("--repeats", repeats, "seeds of each condition, instead of the study's")
+      ->check(CLI::Range(1, 100000));
   app.add_option("--jobs", o.jobs, "runs at a time; by default as many as there are cores for their threads")
       ->check(CLI::Range(1, 4096));
   app.add_option("--threads", o.threads, "threads of each run")
       ->check(CLI::Range(1, 4096))
       ->capture_default_str();
-  app.add_option("--repeat-until", o.until,
-                 "add seeds until the 95 % interval is so narrow: \"MEASURE < 5 %\"");
+  app.add_option("--on", o.on, "here: on this machine; slurm: as a job array of the Slurm that is there")
+      ->check(CLI::IsMember({"here", "slurm"}))
+      ->capture_default_str();
+  app.add_option("--sbatch", o.sbatch,
+                 "with --on slurm, an option of sbatch: --sbatch=--partition=short --sbatch=--time=2:00:00 "
+                 "--sbatch=--mem=2G")
+      ->type_name("OPTION")
+      ->allow_extra_args(false);
+  CLI::Option* until = app.add_option("--repeat-until", o.until,
+                                      "add seeds until the 95 % interval is so narrow: \"MEASURE < 5 %\"");
   app.add_option("--most-repeats", o.most_repeats, "seeds of a condition that --repeat-until stops at")
       ->check(CLI::Range(2, 100000))
+      ->needs(until)
       ->capture_default_str();
   app.add_flag("--retry", o.retry, "run members again that failed");
   if (const auto code = parse(app, argc, argv)) return *code;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  if (o.jobs == 0) o.jobs = std::max(1, cores / o.threads);
-  if (o.jobs * o.threads > cores)
-    fmt::print(stderr, "{} runs of {} threads on {} cores wait for each other\n", o.jobs, o.threads, cores);
+  if (!o.sbatch.empty() && o.on != "slurm") throw InputError("--sbatch is for --on slurm only");
   if (o.out.empty()) o.out = fs::path("out") / fs::absolute(o.file).parent_path().filename();
 
   const Document document(o.file);
   StudyInput study;
   document.read(study);
+  add_changes(changes, document, study);
+  if (repeats) study.repeats = *repeats;
   make_folder(o.out);
   const Lock lock(o.out);
+  const std::unique_ptr<Site> site = make_site(o);
   for (int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { stop_asked = 1; });
-  return StudyRun(o, document, std::move(study)).run() ? 0 : 1;
+  return StudyRun(o, document, std::move(study), *site).run() ? 0 : 1;
 }
 
 }  // namespace trackbed

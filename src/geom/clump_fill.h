@@ -15,7 +15,8 @@ struct ClumpFilling {
   double ratio = 0.3;   // smallest pebble radius / largest, above 0 up to 1: the larger, the fewer pebbles
   int max_pebbles = 0;  // stop there; 0 for no limit
   double radius_factor = 1.05;  // a pebble's radius is at most this times its centre's depth
-  int samples = 0;              // points on the surface to look from; 0 for a number that suits the rest
+  bool enlarge = false;  // make_stone: scale the pebbles about the centre of mass to the volume of the solid
+  int samples = 0;       // points on the surface to look from; 0 for a number that suits the rest
 };
 
 /// Angle between two spheres [rad]: 0 when they touch from outside (or are apart), pi when one touches the

@@ -1,5 +1,6 @@
 #include "geom/stone.h"
 
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
@@ -12,6 +13,10 @@ Stone make_stone(const TriangleMesh& solid, const std::string& name, const Clump
   TriangleMesh surface = in_principal_frame(solid, mass);
   std::vector<Pebble> pebbles = fill_with_pebbles(surface, filling);
   if (pebbles.empty()) throw InputError(name + ": no pebble fits inside; is the mesh too thin?");
+  if (filling.enlarge) {
+    const double scale = std::cbrt(1 / clump_error(surface, pebbles).volume_ratio);
+    for (Pebble& p : pebbles) p = {p.centre * scale, p.radius * scale};
+  }
   Stone stone;
   stone.shape = measure_shape(surface);
   stone.error = clump_error(surface, pebbles);

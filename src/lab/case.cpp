@@ -81,6 +81,7 @@ std::vector<ClumpTemplate> make_templates(const Document& document, const std::s
   filling.distance = stones.distance;
   filling.ratio = stones.ratio;
   filling.max_pebbles = stones.max_pebbles;
+  filling.enlarge = stones.enlarge;
   const int n = stones.files.empty() ? stones.shapes : static_cast<int>(stones.files.size());
   std::vector<std::optional<ClumpTemplate>> made(static_cast<std::size_t>(n));
   std::vector<std::string> errors(static_cast<std::size_t>(n));
@@ -124,7 +125,7 @@ void build_set(const Document& document, const std::string& name, const ShapesIn
     for (int t = stones.first; t < stones.first + stones.count; ++t)
       templates.push_back(make_stand_in(sim.model.templates[static_cast<std::size_t>(t)]));
   } else {
-    templates = make_templates(document, key, in, sim.seed, sim.model.space);
+    templates = make_templates(document, key, in, in.seed.value_or(sim.seed), sim.model.space);
   }
   sim.stone_sets.push_back(
       {name, static_cast<int>(sim.model.templates.size()), static_cast<int>(templates.size()), material});

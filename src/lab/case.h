@@ -26,10 +26,12 @@ struct GradingInput {
 struct ShapesInput {
   std::vector<std::filesystem::path> files;  // empty: made by the generator
   int shapes = 10;                           // made by the generator
+  std::optional<std::uint64_t> seed;         // of the generator; the case's where there is none
   std::string fidelity = "clump";            // clump | ball | stand_in
   double distance = 2.6;                     // [rad]
   double ratio = 0.3;
   int max_pebbles = 0;
+  bool enlarge = false;           // pebbles, to the volume of the mesh
   double largest_elongation = 3;  // stones with a longer L/S are left out
   std::string material = "ballast";
 };

@@ -38,6 +38,10 @@ void declare(Fields& f, ShapesInput& in) {
           "stone meshes (STL, OBJ, PLY); by default shapes are made by the stone generator");
   f.integer("shapes", in.shapes, {.at_least = 1, .at_most = 1000},
             "number of shapes that the generator makes");
+  f.integer(
+      "seed", in.seed, {},
+      "of the shapes that the generator makes, so that beds of several seeds are of the same shapes; by "
+      "default the seed of the case");
   f.choice("fidelity", in.fidelity, {"clump", "ball", "stand_in"},
            "clump: pebbles fill the shape; ball: one pebble of equal volume, for which the keys of shape do "
            "not count; stand_in, for further sets: one pebble of the volume that the pebbles of a stone of "
@@ -47,6 +51,9 @@ void declare(Fields& f, ShapesInput& in) {
   f.number("ratio", in.ratio, {.above = 0, .at_most = 1},
            "Ratio: smallest pebble radius over the largest; larger is coarser, with fewer pebbles");
   f.integer("max_pebbles", in.max_pebbles, {.at_least = 0}, "most pebbles of a stone; 0 for no limit");
+  f.flag("enlarge", in.enlarge,
+         "enlarge the pebbles of a stone together until their union has the volume of its mesh; by default "
+         "they stay inside, where few pebbles fill little of it");
   f.number("largest_elongation", in.largest_elongation, {.above = 1},
            "stones from files whose length is more than this times their thickness are left out");
   f.text("material", in.material, "a material of the case");

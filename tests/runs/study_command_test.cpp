@@ -1,40 +1,21 @@
 // trackbed study as a user calls it: it goes on after any end, and its tables do not tell.
-#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
-#include <sstream>
 #include <thread>
 
 #include "base/rng.h"
 #include "io/files.h"
+#include "scenes/study_process.h"
 #include "scenes/temporary_folder.h"
-
-extern char** environ;
 
 namespace trackbed {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* balls_in_a_box = R"toml(
-title = "Balls in a box"
-stones.fidelity = "ball"
-materials.ballast = { kn = "1e6 N/m", ks = "1e6 N/m", friction = 0.5, density = "2650 kg/m^3" }
-walls.box = { kind = "box", size = ["0.2 m", "0.2 m", "0.1 m"], material = "ballast" }
-record.picture = false
-record.tables = false
-record.paraview_stones = "none"
-[[stages]]
-kind = "fill"
-[[stages]]
-kind = "settle"
-)toml";
 
 constexpr const char* study = R"toml(
 title = "Friction of balls"
@@ -53,65 +34,74 @@ class StudyCommand : public testing::Test {
     write_file(folder_.path / "study.toml", study);
   }
 
-  pid_t start(const std::string& out, const std::vector<std::string>& further = {}) const {
-    std::vector<std::string> words{TRACKBED_PROGRAM,
-                                   "study",
-                                   (folder_.path / "study.toml").string(),
-                                   "--out",
-                                   (folder_.path / out).string(),
-                                   "--jobs",
-                                   "2"};
-    words.insert(words.end(), further.begin(), further.end());
-    std::vector<char*> argv;
-    for (std::string& word : words) argv.push_back(word.data());
-    argv.push_back(nullptr);
-    posix_spawn_file_actions_t actions;
-    ::posix_spawn_file_actions_init(&actions);
-    for (int stream : {STDOUT_FILENO, STDERR_FILENO})
-      ::posix_spawn_file_actions_addopen(&actions, stream, (folder_.path / "messages.txt").c_str(),
-                                         O_WRONLY | O_CREAT | O_APPEND, 0644);
-    pid_t process = 0;
-    EXPECT_EQ(::posix_spawn(&process, TRACKBED_PROGRAM, &actions, nullptr, argv.data(), environ), 0);
-    ::posix_spawn_file_actions_destroy(&actions);
-    return process;
-  }
-  static int wait(pid_t process) {
-    int status = 0;
-    ::waitpid(process, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
-  }
-  int run(const std::string& out, const std::vector<std::string>& further = {}) const {
-    return wait(start(out, further));
+  int run(const std::string& out, std::vector<std::string> options = {}) const {
+    options.insert(options.end(), {"--jobs", "2"});
+    return StudyProcess(TRACKBED_PROGRAM, folder_.path / "study.toml", folder_.path / out, options).wait();
   }
   std::string messages() const { return read_file(folder_.path / "messages.txt"); }
 
-  /// study.csv without the wall times.
-  std::string members(const std::string& out) const {
-    std::istringstream in(read_file(folder_.path / out / "study.csv"));
-    std::string all, line;
-    while (std::getline(in, line)) {
-      const std::size_t last = line.rfind(','), before = line.rfind(',', last - 1);
-      all += line.substr(0, before) + line.substr(last) + "\n";
-    }
-    return all;
-  }
+  void expect_the_same_when_killed(int kills, int longest_ms);
 
   TemporaryFolder folder_;
 };
 
-TEST_F(StudyCommand, IsTheSameHoweverOftenItIsKilled) {
+/// Kills a worker and the study by turns, so many times together, at moments up to longest_ms apart.
+void StudyCommand::expect_the_same_when_killed(int kills, int longest_ms) {
+  const fs::path calm = folder_.path / "calm", killed = folder_.path / "killed";
   ASSERT_EQ(run("calm"), 0) << messages();
-  Rng rng(1, "when to kill");
-  int kills = 0;
-  for (int tries = 0; tries < 100; ++tries) {
-    const pid_t process = start("killed");
-    std::this_thread::sleep_for(std::chrono::milliseconds(50 + static_cast<int>(rng.index(400))));
-    if (kills < 6 && ::kill(process, SIGKILL) == 0) ++kills;
-    if (wait(process) == 0) break;
+  Rng rng(1, "whom to kill, and when");
+  int done = 0;
+  for (int studies = 0; done < kills && studies < 10 * kills; ++studies) {
+    // What three kills have stopped is given up: it is tried again.
+    StudyProcess study_process(TRACKBED_PROGRAM, folder_.path / "study.toml", killed,
+                               {"--jobs", "2", "--retry"});
+    while (done < kills && !study_process.has_ended()) {
+      std::this_thread::sleep_for(
+          std::chrono::milliseconds(1 + rng.index(static_cast<std::uint64_t>(longest_ms))));
+      const std::vector<pid_t> workers = study_process.workers();
+      if (done % 2 == 0) {
+        if (!workers.empty() && ::kill(workers[rng.index(workers.size())], SIGKILL) == 0) ++done;
+      } else if (!study_process.has_ended()) {
+        study_process.kill();
+        ++done;
+      }
+    }
+    study_process.wait();
+    // All members done before all kills: from the beginning again.
+    if (done < kills && fs::exists(killed / "study.csv") && members_of(killed) == members_of(calm))
+      fs::remove_all(killed);
   }
-  EXPECT_GE(kills, 3);
-  EXPECT_EQ(members("killed"), members("calm"));
-  EXPECT_EQ(read_file(folder_.path / "killed/table.csv"), read_file(folder_.path / "calm/table.csv"));
+  EXPECT_EQ(done, kills);
+  EXPECT_EQ(run("killed", {"--retry"}), 0) << messages();
+  EXPECT_EQ(members_of(killed), members_of(calm));
+  EXPECT_EQ(read_file(killed / "table.csv"), read_file(calm / "table.csv"));
+}
+
+TEST_F(StudyCommand, IsTheSameHoweverOftenItAndItsWorkersAreKilled) {
+  expect_the_same_when_killed(6, 300);
+}
+
+TEST_F(StudyCommand, long_is_the_same_after_twenty_kills) {
+  expect_the_same_when_killed(20, 600);
+}
+
+TEST_F(StudyCommand, AStoppedMemberGoesOnFromItsOwnCheckpoint) {
+  // Long enough to be stopped on the way: the study asks its members to stop, and each leaves a checkpoint.
+  const std::vector<std::string> set{"--set", "stages.settle.unbalanced_ratio=1e-6", "--repeats", "1"};
+  std::vector<std::string> alone = set;
+  alone.insert(alone.end(), {"--jobs", "1"});
+  ASSERT_EQ(run("calm", alone), 0) << messages();
+  StudyProcess stopped = begin("out", alone);
+  const fs::path members = folder_.path / "out/members";
+  const auto begun = [&] {
+    return !expand_pattern(members / "*/checkpoint/*.state").empty();  // the first stage is over
+  };
+  while (!begun() && !stopped.has_ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  stopped.ask_to_stop();
+  stopped.wait();
+  ASSERT_FALSE(expand_pattern(members / "*/checkpoint/*.state").empty());
+  ASSERT_EQ(run("out", alone), 0) << messages();
+  EXPECT_EQ(members_of(folder_.path / "out"), members_of(folder_.path / "calm"));
 }
 
 TEST_F(StudyCommand, RunsAgainOnlyWhatHasChanged) {
@@ -164,6 +154,27 @@ TEST_F(StudyCommand, AddsSeedsUntilTheIntervalIsNarrow) {
   EXPECT_EQ(run("wide", {"--repeat-until", "contacts < 100 %"}), 0) << messages();
   EXPECT_FALSE(fs::exists(folder_.path / "wide/members/friction_0.5-seed-4"));
   EXPECT_EQ(run("wrong", {"--repeat-until", "contacts"}), 2);
+}
+
+TEST_F(StudyCommand, ChangesTheCaseInAllMembersButNotWhatTheStudyChanges) {
+  EXPECT_EQ(run("out", {"--repeats", "1", "--set", "stages.fill.porosity=0.6"}), 0) << messages();
+  const std::string summary = read_file(folder_.path / "out/members/friction_0.5-seed-1/summary.json");
+  EXPECT_NE(summary.find("\"porosity\": 0.6"), std::string::npos) << summary;
+  EXPECT_FALSE(fs::exists(folder_.path / "out/members/friction_0.5-seed-2"));
+  EXPECT_EQ(run("out", {"--set", "materials.ballast.friction=0.3"}), 2);
+  EXPECT_NE(messages().find("the study itself changes materials.ballast.friction"), std::string::npos);
+  EXPECT_EQ(run("out", {"--set", "seed=3"}), 2);
+}
+
+TEST_F(StudyCommand, SaysThatThereIsNoSlurm) {
+  EXPECT_EQ(run("out", {"--sbatch=--mem=1G"}), 2);
+  EXPECT_NE(messages().find("--sbatch is for --on slurm only"), std::string::npos) << messages();
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", folder_.path.c_str(), 1);
+  EXPECT_EQ(run("out", {"--on", "slurm"}), 2);
+  ::setenv("PATH", path.c_str(), 1);
+  EXPECT_NE(messages().find("--on slurm: there is no sbatch on this machine"), std::string::npos)
+      << messages();
 }
 
 }  // namespace

@@ -53,6 +53,20 @@ std::string input_at(const Condition& condition, const std::string& key) {
   return found == condition.inputs.end() ? "" : found->second;
 }
 
+/// Value and unit of a measure at the end of the run or, "STAGE.MEASURE", of a stage; null when there is
+/// none.
+const Json* find_measure(const Json& summary, const std::string& name) {
+  if (!summary.is_object()) return nullptr;
+  if (summary["measures"].contains(name)) return &summary["measures"][name];
+  const std::size_t point = name.find('.');
+  if (point == std::string::npos) return nullptr;
+  for (const Json& stage : summary["stages"])
+    if (stage["name"] == name.substr(0, point) && stage.contains("measures") &&
+        stage["measures"].contains(name.substr(point + 1)))
+      return &stage["measures"][name.substr(point + 1)];
+  return nullptr;
+}
+
 /// The measures of the tables: those of the study, or all results of stages, in the order of the first
 /// summary.
 std::vector<std::string> measures_of(const StudyInput& study, const std::vector<Outcome>& outcomes) {
@@ -72,7 +86,7 @@ std::vector<std::string> measures_of(const StudyInput& study, const std::vector<
   }
   if (!all.empty())
     for (const std::string& name : study.measures)
-      if (std::ranges::find(all, name) == all.end())
+      if (std::ranges::none_of(outcomes, [&](const Outcome& o) { return find_measure(o.summary, name); }))
         throw InputError(
             fmt::format("no member has the measure {}: {}", name, known_words(name, by_distance(name, all))));
   return study.measures;
@@ -80,8 +94,8 @@ std::vector<std::string> measures_of(const StudyInput& study, const std::vector<
 
 std::string unit_of(const std::string& measure, const std::vector<Outcome>& outcomes) {
   for (const Outcome& outcome : outcomes)
-    if (outcome.status == MemberStatus::done && outcome.summary["measures"].contains(measure))
-      return outcome.summary["measures"][measure]["unit"].get<std::string>();
+    if (const Json* found = find_measure(outcome.summary, measure))
+      return (*found)["unit"].get<std::string>();
   return "-";
 }
 
@@ -124,10 +138,9 @@ void write_failure(const Member& member, const std::string& cause, const fs::pat
 }
 
 std::optional<double> measure_in(const Json& summary, const std::string& name) {
-  if (!summary.contains("measures") || !summary["measures"].contains(name)) return std::nullopt;
-  const Json& value = summary["measures"][name]["value"];
-  if (!value.is_number()) return std::nullopt;
-  return value.get<double>();
+  const Json* found = find_measure(summary, name);
+  if (!found || !(*found)["value"].is_number()) return std::nullopt;
+  return (*found)["value"].get<double>();
 }
 
 void write_members(const StudyInput& study, const std::vector<Condition>& conditions,

@@ -27,7 +27,8 @@ Outcome outcome_of(const Member& member, const std::filesystem::path& folder);
 /// Remembers that a member failed, with its input.
 void write_failure(const Member& member, const std::string& cause, const std::filesystem::path& folder);
 
-/// Value of a measure of a summary; nothing when it has none.
+/// Value of a measure of a summary, at the end of the run or, as "STAGE.MEASURE", at the end of a stage;
+/// nothing when it has none.
 std::optional<double> measure_in(const nlohmann::ordered_json& summary, const std::string& name);
 
 /// study.csv: a row a member with every changed key, seed, status, measures with units, seconds and state

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "io/echo.h"
 #include "lab/case.h"
 #include "lab/checks.h"
@@ -31,8 +32,10 @@ void declare(Fields& f, StudyInput& in) {
   f.texts("set", in.set, "changes of the case in all members, KEY=VALUE as for --set");
   f.integer("repeats", in.repeats, {.at_least = 1, .at_most = 100000}, "seeds of each condition");
   f.integer("first_seed", in.first_seed, {}, "seeds are counted up from here");
-  f.texts("measures", in.measures,
-          "measures of summary.json that the tables hold; by default all results of stages");
+  f.texts(
+      "measures", in.measures,
+      "measures that the tables hold, at the end of the run or, STAGE.MEASURE, of a stage; by default all "
+      "results of stages");
   f.sequence("conditions", in.conditions,
              "conditions that are written out; by default one, the case as it stands");
   f.sequence("sweep", in.sweeps,
@@ -134,6 +137,12 @@ Member make_member(const StudyInput& study, const std::vector<Condition>& condit
     throw InputError(fmt::format("the condition {}: {}", conditions[condition].name, error.what()));
   }
   return member;
+}
+
+std::string fingerprint(const Member& member) {
+  Hash hash;
+  hash.add(member.input.dump());
+  return fmt::format("{:016x}", hash.value());
 }
 
 std::vector<Member> members_of(const StudyInput& study, const std::vector<Condition>& conditions) {

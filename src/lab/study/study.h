@@ -59,6 +59,9 @@ struct Member {
   nlohmann::ordered_json input;  // the case as it was understood: what decides whether results are still good
 };
 
+/// Of the input: two members with the same one give the same results.
+std::string fingerprint(const Member& member);
+
 /// The members of all conditions with seeds first_seed to first_seed + repeats - 1. Every case is read and
 /// checked: throws InputError that names the member.
 std::vector<Member> members_of(const StudyInput& study, const std::vector<Condition>& conditions);

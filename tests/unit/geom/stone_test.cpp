@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/rng.h"
 #include "geom/mass_properties.h"
 #include "geom/stone_generator.h"
@@ -39,6 +41,23 @@ TEST(stone, error_falls_as_distance_grows) {
     EXPECT_LT(stone.error.mean_distance, last);
     last = stone.error.mean_distance;
   }
+}
+
+TEST(stone, enlarged_pebbles_fill_the_volume_of_the_stone_and_leave_its_mass) {
+  const TriangleMesh mesh = generate_stone({}, 1, 0);
+  ClumpFilling filling;
+  filling.ratio = 0.8;
+  const Stone inside = make_stone(mesh, "made", filling);
+  filling.enlarge = true;
+  const Stone enlarged = make_stone(mesh, "made", filling);
+  EXPECT_LT(inside.error.volume_ratio, 0.8);
+  EXPECT_NEAR(enlarged.error.volume_ratio, 1, 2e-3);  // each ratio is good to 0.1 %
+  EXPECT_EQ(enlarged.clump.volume, inside.clump.volume);
+  EXPECT_EQ(enlarged.clump.inertia, inside.clump.inertia);
+  ASSERT_EQ(enlarged.clump.pebbles.size(), inside.clump.pebbles.size());
+  const double scale = std::cbrt(1 / inside.error.volume_ratio);
+  EXPECT_NEAR(enlarged.clump.bounding_radius, scale * inside.clump.bounding_radius,
+              1e-12 * inside.clump.bounding_radius);
 }
 
 TEST(stone, thousands_of_pebbles_are_reached) {

@@ -130,7 +130,10 @@ void finish(const Member& member, const std::filesystem::path& folder, double se
   make_folder(folder);
   const nlohmann::ordered_json summary{
       {"input", member.input},
-      {"stages", {{{"name", "load"}, {"results", {{"settlement", {{"value", settlement}, {"unit", "m"}}}}}}}},
+      {"stages",
+       {{{"name", "load"},
+         {"results", {{"settlement", {{"value", settlement}, {"unit", "m"}}}}},
+         {"measures", {{"porosity", {{"value", 0.3}, {"unit", "-"}}}}}}}},
       {"measures",
        {{"load.settlement", {{"value", settlement}, {"unit", "m"}}},
         {"porosity", {{"value", 0.4}, {"unit", "-"}}}}},
@@ -188,6 +191,15 @@ TEST_F(Study, TablesHoldInputsMeasuresAndTheirSpread) {
       table.starts_with("condition,stages.fill.porosity,measure,unit,n,mean,standard deviation,95 % low,"
                         "95 % high\nporosity 0.5,0.5,load.settlement,m,2,0.0015,"))
       << table;
+
+  // At the end of the run and at that of a stage.
+  EXPECT_EQ(measure_in(outcomes[0].summary, "porosity"), 0.4);
+  EXPECT_EQ(measure_in(outcomes[0].summary, "load.porosity"), 0.3);
+  EXPECT_FALSE(measure_in(outcomes[0].summary, "fill.porosity"));
+  study_.measures = {"load.porosity"};
+  write_table(study_, all, members, outcomes, folder_.path / "table.csv");
+  EXPECT_NE(read_file(folder_.path / "table.csv").find("porosity 0.5,0.5,load.porosity,-,2,0.3,0,0.3,0.3\n"),
+            std::string::npos);
 
   study_.measures = {"porosity", "load.setlement"};
   EXPECT_THROW(write_table(study_, all, members, outcomes, folder_.path / "table.csv"), InputError);
