@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace trackbed {
+namespace trackbed::fem {
 
 using Mat6 = Eigen::Matrix<double, 6, 6>;
 
@@ -31,4 +31,4 @@ struct Elastic {
   }
 };
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -5,7 +5,7 @@
 
 #include "fem/soil.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// u(n+1) from u(n), u(n-1) and the forces at n:
 ///     M (u(n+1) - 2 u(n) + u(n-1))/dt^2 + C (u(n+1) - u(n-1))/(2 dt) + K u(n) = f(n)
@@ -39,4 +39,4 @@ class ExplicitSoil {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -7,7 +7,7 @@
 #include "base/vec.h"
 #include "fem/hexahedron.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 struct HexMesh {
   std::vector<Vec3> nodes;                // [m]
@@ -45,4 +45,4 @@ HexMesh extrude(const Section&, double x0, double dx, int planes);
 /// `extrude`.
 HexMesh make_block(const Vec3& low, const Vec3& high, int nx, int ny, int nz);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

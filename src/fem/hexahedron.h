@@ -6,7 +6,7 @@
 #include "base/vec.h"
 #include "fem/elastic.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// Places of the nodes of an element, a column a node [m]: those of the lower face (local z = -1) against the
 /// clock, then those above them.
@@ -29,11 +29,11 @@ HexMatrix hex_stiffness(const HexNodes&, const Elastic&, HexKind);
 /// Consistent mass [kg].
 HexMatrix hex_mass(const HexNodes&, double density);
 
-/// Lumped mass of each node [kg]: row sums of the consistent one, its integral of N_a (Gauss, 2 x 2 x 2).
+/// Lumped mass of each node [kg]: row sums of the consistent one.
 Eigen::Matrix<double, 8, 1> hex_lumped_mass(const HexNodes&, double density);
 
-/// Stress at the centre of an element [Pa], order as in Elastic::stiffness. Of incompatible modes, which
-/// vanish in the mean of a patch of uniform strain, nothing is added.
+/// Stress at the centre of an element [Pa], order as in Elastic::stiffness. There the gradients of the
+/// incompatible modes are zero, and of bricks the volume strain is its mean, so that all kinds have the same.
 Eigen::Matrix<double, 6, 1> hex_stress(const HexNodes&, const Elastic&, const HexVector& displacement);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -5,7 +5,7 @@
 
 #include "fem/soil.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 struct ReductionInput {
   int krylov = 3;  // vectors K^-1 M ... beside the static one, of each pressure shape: 1 % at worst of a
@@ -33,4 +33,4 @@ ReducedSoil reduce(const Soil&, const ReductionInput& = {});
 /// there. The file is named by a hash of the input and written beside and moved into place.
 ReducedSoil reduce(const Soil&, const ReductionInput&, const std::filesystem::path& folder);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -20,7 +20,7 @@
 
 #include "fem/hex_mesh.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// What holds a face of the soil.
 enum class Support {
@@ -88,10 +88,17 @@ struct Soil {
            footing_section_nodes[static_cast<std::size_t>(row)];
   }
   double x_of(int footing) const;  // middle [m]
+
+  /// Do the supports, or symmetry, hold this displacement at zero?
+  bool is_held(int plane, int section_node, int axis) const;
+  /// Dashpots of absorbing faces at a node, along each axis [N s/m].
+  Vec3 dashpot(int plane, int section_node) const;
+  /// Lumped mass of a node [kg].
+  double mass(int plane, int section_node) const;
 };
 
 /// Throws InputError that names the key when lengths are no multiples of the element size, or a footing does
 /// not lie on the ballast or reaches over an end.
 Soil make_soil(const SoilInput&);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem
