@@ -157,12 +157,12 @@ Vec3 Soil::dashpot(int plane, int section_node) const {
   const double h = input.element_size;
   const double lengthwise = plane == 0 || plane == planes - 1 ? h / 2 : h;
   Vec3 c = Vec3::Zero();
-  auto add = [&](int material, double area, int across) {
+  auto add = [&](int material, double share, int across) {
     if (material < 0) return;
     const Elastic& solid = materials[static_cast<std::size_t>(material)];
     for (int axis = 0; axis < 3; ++axis)
       c[axis] +=
-          area * solid.density * (axis == across ? solid.pressure_wave_speed() : solid.shear_wave_speed());
+          share * solid.density * (axis == across ? solid.pressure_wave_speed() : solid.shear_wave_speed());
   };
   const bool at_end = (plane == 0 && input.start == Support::absorbing) ||
                       (plane == planes - 1 && input.end == Support::absorbing);

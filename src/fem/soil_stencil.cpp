@@ -7,6 +7,9 @@ namespace trackbed::fem {
 
 namespace {
 
+/// Planes worked on together, so that forces stay in the nearest cache.
+constexpr int chunk = 512;
+
 int corner(int i, int j, int k) {
   return 4 * k + (j == 0 ? i : 3 - i);
 }
@@ -58,16 +61,16 @@ struct Three {
   const double *x, *y, *z;
 };
 
-/// Adds one neighbour's part to the forces of planes 1 .. planes - 2.
+/// Adds one neighbour's part to the forces of planes from .. to - 1.
 void add_inner(const InnerStencil& s, std::size_t q, const Three& u, const std::array<double*, 3>& out,
-               int planes) {
+               int from, int to) {
   const auto &m = s.middle[q], &e = s.even[q], &o = s.odd[q];
   double *fx = out[0], *fy = out[1], *fz = out[2];
   const double mxx = m[0][0], myy = m[1][1], myz = m[1][2], mzy = m[2][1], mzz = m[2][2];
   const double exx = e[0][0], eyy = e[1][1], eyz = e[1][2], ezy = e[2][1], ezz = e[2][2];
   const double oxy = o[0][1], oxz = o[0][2], oyx = o[1][0], ozx = o[2][0];
 #pragma omp simd
-  for (int i = 1; i < planes - 1; ++i) {
+  for (int i = from; i < to; ++i) {
     const double tx = u.x[i + 1] - u.x[i - 1], ty = u.y[i + 1] - u.y[i - 1], tz = u.z[i + 1] - u.z[i - 1];
     const double sx = u.x[i + 1] + u.x[i - 1], sy = u.y[i + 1] + u.y[i - 1], sz = u.z[i + 1] + u.z[i - 1];
     fx[i] += (mxx * u.x[i] + exx * sx) + (oxy * ty + oxz * tz);
@@ -120,14 +123,16 @@ void SoilStencil::force(const double* u, int section_node, const std::array<doub
   const Row& r = rows_[static_cast<std::size_t>(section_node)];
   const auto type = static_cast<std::size_t>(r.type);
   for (double* f : out) std::fill(f, f + planes_, 0.0);
-  for (std::size_t q = 0; q < 9; ++q) {
-    const int n = r.neighbours[q];
-    if (n < 0) continue;
-    const Three of{row(u, n, 0), row(u, n, 1), row(u, n, 2)};
-    add_inner(inner_[type], q, of, out, planes_);
-    add_end(start_[type], q, of, out, 0, 1);
-    add_end(end_[type], q, of, out, planes_ - 1, planes_ - 2);
-  }
+  std::array<Three, 9> of{};
+  for (std::size_t q = 0; q < 9; ++q)
+    if (const int n = r.neighbours[q]; n >= 0) {
+      of[q] = {row(u, n, 0), row(u, n, 1), row(u, n, 2)};
+      add_end(start_[type], q, of[q], out, 0, 1);
+      add_end(end_[type], q, of[q], out, planes_ - 1, planes_ - 2);
+    }
+  for (int from = 1; from < planes_ - 1; from += chunk)
+    for (std::size_t q = 0; q < 9; ++q)
+      if (of[q].x) add_inner(inner_[type], q, of[q], out, from, std::min(from + chunk, planes_ - 1));
 }
 
 double SoilStencil::diagonal(int section_node, int axis) const {
