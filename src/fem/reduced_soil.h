@@ -8,10 +8,10 @@
 namespace trackbed::fem {
 
 struct ReductionInput {
-  int krylov = 3;  // vectors K^-1 M ... beside the static one, of each pressure shape: 1 % at worst of a
-                   // sleeper's peak
-  double window =
-      18;  // length of soil in which a footing's columns are worked out [m]; beyond it they are zero
+  int krylov = 3;      // vectors K^-1 M ... beside the static one, of each pressure shape: 1 % at worst of a
+                       // sleeper's peak
+  double window = 18;  // length of soil in which a footing's columns are worked out [m], beyond it they are
+                       // zero; 18 m changes nothing, 6 m 0.02 % under axles and 1 % under blows of 10 ms
 };
 
 /// Displacements u = V q of all nodes, V orthonormal in mass and stiffness:
