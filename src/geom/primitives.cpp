@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <utility>
+#include <vector>
 
 namespace trackbed {
 
@@ -12,6 +13,39 @@ TriangleMesh box_mesh(const Vec3& size, const Vec3& low) {
     mesh.vertices.push_back(low + Vec3(k & 1 ? size.x() : 0, k & 2 ? size.y() : 0, k & 4 ? size.z() : 0));
   mesh.facets = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                  {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+TriangleMesh wedge_mesh(const Vec3& size, double angle, int wedges) {
+  // The outline from above, anticlockwise seen against y: top left, the teeth from left to right, top right.
+  const double x = 0.5 * size.x(), y = 0.5 * size.y(), pitch = size.x() / wedges;
+  const double depth = 0.5 * pitch * std::tan(angle);
+  std::vector<Vec3> outline{{-x, 0, size.z()}, {-x, 0, 0}};
+  for (int k = 0; k < wedges; ++k) {
+    outline.push_back({-x + (k + 0.5) * pitch, 0, -depth});
+    outline.push_back({-x + (k + 1) * pitch, 0, 0});
+  }
+  outline.push_back({x, 0, size.z()});
+  // Front at -y, back at y; the parts of each: a tooth, and above its base a triangle up to the top left.
+  const int n = static_cast<int>(outline.size());
+  TriangleMesh mesh;
+  for (const double side : {-y, y})
+    for (const Vec3& p : outline) mesh.vertices.push_back({p.x(), side, p.z()});
+  const auto add_face = [&](int a, int b, int c) {
+    mesh.facets.push_back({a, b, c});
+    mesh.facets.push_back({n + a, n + c, n + b});
+  };
+  for (int k = 0; k < wedges; ++k) {
+    const int left = 1 + 2 * k;
+    add_face(left, left + 1, left + 2);
+    add_face(0, left, left + 2);
+  }
+  add_face(0, n - 2, n - 1);
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    mesh.facets.push_back({k, n + k, n + next});
+    mesh.facets.push_back({k, n + next, next});
+  }
   return mesh;
 }
 

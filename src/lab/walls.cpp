@@ -116,6 +116,24 @@ void declare(Fields& f, BlockInput& in) {
   f.vector(required("size"), in.size, Dimension::length, {.above = 0}, "length, width and height");
 }
 
+struct WedgeInput : BodyInput {
+  Vec3 size = Vec3::Zero();
+  double angle = 0;  // [rad]
+  int wedges = 1;
+
+  TriangleMesh shape() const override { return wedge_mesh(size, angle, wedges); }
+};
+
+void declare(Fields& f, WedgeInput& in) {
+  declare_body(f, in);
+  f.vector(required("size"), in.size, Dimension::length, {.above = 0},
+           "length, width and height of the block above the wedges");
+  f.quantity(required("angle"), in.angle, Dimension::angle, {.above = 0, .below = 0.49 * std::numbers::pi},
+             "between a face of a wedge and the horizontal");
+  f.integer("wedges", in.wedges, {.at_least = 1, .at_most = 100},
+            "side by side along the length, their ridges across it");
+}
+
 struct MeshBodyInput : BodyInput {
   std::filesystem::path file;
   double unit = 1;
@@ -144,9 +162,11 @@ const Kinds<WallInput>& wall_kinds() {
 }
 
 const Kinds<BodyInput>& body_kinds() {
-  static const Kinds<BodyInput> kinds{"body",
-                                      {kind_of<BodyInput, BlockInput>("block", "a cuboid, such as a sleeper"),
-                                       kind_of<BodyInput, MeshBodyInput>("mesh", "a solid from a file")}};
+  static const Kinds<BodyInput> kinds{
+      "body",
+      {kind_of<BodyInput, BlockInput>("block", "a cuboid, such as a sleeper"),
+       kind_of<BodyInput, WedgeInput>("wedge", "a cuboid on wedges that point down"),
+       kind_of<BodyInput, MeshBodyInput>("mesh", "a solid from a file")}};
   return kinds;
 }
 

@@ -87,11 +87,9 @@ TEST_F(StudyCommand, long_is_the_same_after_twenty_kills) {
 
 TEST_F(StudyCommand, AStoppedMemberGoesOnFromItsOwnCheckpoint) {
   // Long enough to be stopped on the way: the study asks its members to stop, and each leaves a checkpoint.
-  const std::vector<std::string> set{"--set", "stages.settle.unbalanced_ratio=1e-6", "--repeats", "1"};
-  std::vector<std::string> alone = set;
-  alone.insert(alone.end(), {"--jobs", "1"});
-  ASSERT_EQ(run("calm", alone), 0) << messages();
-  StudyProcess stopped = begin("out", alone);
+  const std::vector<std::string> options{"--set", "stages.settle.unbalanced_ratio=1e-6", "--repeats", "1"};
+  ASSERT_EQ(run("calm", options), 0) << messages();
+  StudyProcess stopped(TRACKBED_PROGRAM, folder_.path / "study.toml", folder_.path / "out", options);
   const fs::path members = folder_.path / "out/members";
   const auto begun = [&] {
     return !expand_pattern(members / "*/checkpoint/*.state").empty();  // the first stage is over
@@ -100,7 +98,7 @@ TEST_F(StudyCommand, AStoppedMemberGoesOnFromItsOwnCheckpoint) {
   stopped.ask_to_stop();
   stopped.wait();
   ASSERT_FALSE(expand_pattern(members / "*/checkpoint/*.state").empty());
-  ASSERT_EQ(run("out", alone), 0) << messages();
+  ASSERT_EQ(run("out", options), 0) << messages();
   EXPECT_EQ(members_of(folder_.path / "out"), members_of(folder_.path / "calm"));
 }
 

@@ -80,6 +80,10 @@ bool StudyProcess::has_ended() {
   return process_ == 0;
 }
 
+void StudyProcess::ask_to_stop() {
+  if (process_ > 0) ::kill(process_, SIGTERM);
+}
+
 void StudyProcess::kill() {
   if (process_ > 0) ::kill(process_, SIGKILL);
   wait();

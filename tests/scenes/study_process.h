@@ -25,6 +25,8 @@ class StudyProcess {
   int wait();
   /// Whether it has ended.
   bool has_ended();
+  /// As kill does: it stops its members and ends.
+  void ask_to_stop();
   /// As kill -9 does, whatever it is doing.
   void kill();
   /// The runs that it has started on this machine.

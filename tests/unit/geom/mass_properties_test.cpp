@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/rng.h"
+#include "geom/primitives.h"
 #include "shapes.h"
 
 namespace trackbed {
@@ -16,6 +17,23 @@ TEST(mass_properties, cube) {
   EXPECT_NEAR(mass.area, 6, 1e-14);
   EXPECT_TRUE(mass.centre.isApprox(Vec3::Constant(0.5), 1e-14));
   EXPECT_TRUE(mass.inertia.isApprox(Mat3::Identity() / 6, 1e-13));
+}
+
+TEST(mass_properties, block_on_wedges) {
+  for (const int wedges : {1, 3}) {
+    const TriangleMesh mesh = wedge_mesh({0.3, 0.2, 0.25}, std::numbers::pi / 4, wedges);
+    const MassProperties mass = mass_properties(mesh);
+    const double half_pitch = 0.15 / wedges;  // also the depth, for 45 degrees
+    EXPECT_NEAR(mass.volume, 0.3 * 0.2 * 0.25 + wedges * half_pitch * half_pitch * 0.2, 1e-15);
+    EXPECT_NEAR(mass.area,
+                2 * mass.volume / 0.2 + 0.2 * (0.3 + 2 * 0.25 + wedges * 2 * std::sqrt(2.0) * half_pitch),
+                1e-14);
+    EXPECT_NEAR(mass.centre.x(), 0, 1e-15);
+    EXPECT_NEAR(mass.centre.y(), 0, 1e-15);
+    double lowest = 0;
+    for (const Vec3& v : mesh.vertices) lowest = std::min(lowest, v.z());
+    EXPECT_NEAR(lowest, -half_pitch, 1e-15);
+  }
 }
 
 TEST(mass_properties, turned_box_far_from_the_origin) {
