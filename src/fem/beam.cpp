@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 using Eigen::Matrix4d;
@@ -137,4 +137,4 @@ std::vector<LinkEnd> Beam::at(double x, Index first_port, double weight) const {
   return ends;
 }
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -7,7 +7,7 @@
 #include "fem/coupled_system.h"
 #include "fem/implicit_part.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 struct BeamSection {
   double young = 0;          // E [Pa]
@@ -62,4 +62,4 @@ BeamShape beam_shape(const BeamSection& section, double length, double xi);
 /// `parts` equal steps from a to b, both ends with them.
 std::vector<double> even_nodes(double a, double b, int parts);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -4,7 +4,8 @@
 // solve   f = law(closing* - G f, rate* - c G f),  * without coupling forces, G now between links.
 // Laws never fall with closing and G is positive, so f minimises a convex function: Newton's method with a
 // search along its direction finds it from anywhere. Its linear equations are (D + G) df = ... over links
-// with stiffness 1/D, solved by conjugate gradients (in motion) or Cholesky (on the way to rest).
+// with stiffness 1/D, solved by conjugate gradients (in motion; preconditioned by the blocks of groups of
+// links) or Cholesky (on the way to rest).
 #pragma once
 
 #include <memory>
@@ -13,7 +14,7 @@
 #include "fem/link_law.h"
 #include "fem/part.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// Where a link takes hold: its closing grows by `weight` times the displacement of the port.
 struct LinkEnd {
@@ -25,6 +26,8 @@ struct Link {
   LinkLaw law;
   std::vector<LinkEnd> ends;
   double gap = 0;  // to be closed before it acts [m]
+  int group =
+      -1;  // links that work on each other closely (all of one sleeper) may share a number: it saves time
 };
 
 /// Sums since the start of motion [J]: parts, links, and what comes in through links whose ends are moved or
@@ -78,6 +81,11 @@ class CoupledSystem {
   struct LawValues {
     VectorXd force, slope;  // slope: of force against displacement within the step
   };
+  struct Group {
+    std::vector<Index> links;
+    Eigen::MatrixXd compliance;  // G between them
+  };
+  class Preconditioner;
   struct Placed {
     std::unique_ptr<Part> part;
     Index first = 0;
@@ -87,8 +95,10 @@ class CoupledSystem {
   void advance();
   void book_energy(const VectorXd& force, const VectorXd& closing, const VectorXd& u);
   void make_compliance();
+  void make_groups();
   LawValues laws_at(const VectorXd& answer) const;
   VectorXd answer_to(const VectorXd& forces) const;
+  double error_of(const VectorXd& residual, const VectorXd& slope) const;
   VectorXd newton_direction(const VectorXd& residual, const VectorXd& slope);
   VectorXd by_factor(const VectorXd& right, const VectorXd& slope) const;
   VectorXd by_conjugate_gradients(const VectorXd& right, const VectorXd& slope);
@@ -99,6 +109,7 @@ class CoupledSystem {
   std::vector<Placed> parts_;
   std::vector<Link> links_;
   std::vector<LinkMemory> memory_;
+  std::vector<Group> groups_;                    // of links that share a group; made when motion begins
   std::vector<std::vector<LinkEnd>> left_ends_;  // ends of links that were moved, as they were; else empty
   VectorXd u_, v_, predicted_u_, predicted_v_;   // of ports
   VectorXd force_, closing_, last_force_;        // of links; last: a step earlier
@@ -112,4 +123,4 @@ class CoupledSystem {
   Effort effort_;
 };
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

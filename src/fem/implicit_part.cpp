@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 // Up to so many ports of a sparse structure their compliance is kept as a matrix; beyond, a solve is cheaper.
@@ -167,4 +167,4 @@ PartEnergy ImplicitPart<Matrix>::energy() const {
 template class ImplicitPart<SparseMatrix>;
 template class ImplicitPart<MatrixXd>;
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

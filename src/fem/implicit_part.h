@@ -10,7 +10,7 @@
 
 #include "fem/part.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 using Eigen::MatrixXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
@@ -77,4 +77,4 @@ class ImplicitPart : public Part {
 using SparsePart = ImplicitPart<SparseMatrix>;
 using DensePart = ImplicitPart<MatrixXd>;
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

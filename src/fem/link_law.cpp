@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 struct Curve {
@@ -99,4 +99,4 @@ void check(const LinkLaw& law) {
   std::visit([](const auto& one) { check_one(one); }, law);
 }
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

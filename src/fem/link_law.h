@@ -4,7 +4,7 @@
 #include <variant>
 #include <vector>
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// Force of a link [N], pressing positive, and its slopes.
 struct LinkForce {
@@ -61,4 +61,4 @@ double hertz_stiffness(double constant, double force);
 /// Throws std::invalid_argument with a sentence when a law has a negative constant or a curve that falls.
 void check(const LinkLaw& law);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace trackbed {
+namespace trackbed::fem {
 
 using Eigen::Index;
 using Eigen::VectorXd;
@@ -63,4 +63,4 @@ class Part {
   virtual PartEnergy energy() const = 0;
 };
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 std::size_t at(Index k) {
@@ -124,19 +124,20 @@ void TrackModel::add_ground(Zone& zone, int number) {
   const LinkLaw contact = shared(zone.contact, input_.sleeper.patches);
   for (int s = 0; s < zone.sleepers; ++s, next_x_ += input_.spacing) {
     const Index sleeper = sleepers + s * ports;
+    const int group = static_cast<int>(supports_.size());
     Support support{next_x_, number, system_.links(), -1, patches, sleeper + patches, 0};
     for (int side = 0; side < sides(); ++side) {
       std::vector<LinkEnd> ends = rail_.at(next_x_, rail_port(0, side), -1);
       support.rail_port = ends.front().port;
       ends.push_back({sleeper + patches + side, 1.0});
-      system_.add(Link{input_.fastener, std::move(ends), 0});
+      system_.add(Link{input_.fastener, std::move(ends), 0, group});
     }
     support.first_contact = system_.links();
     const double gap = zone.gaps.empty() ? 0 : zone.gaps.at(at(s));
     for (Index p = 0; p < patches; ++p) {
       std::vector<LinkEnd> ends{{sleeper + p, -1.0}};
       if (ground >= 0) ends.push_back({ground + s * patches + p, 1.0});
-      system_.add(Link{contact, std::move(ends), gap});
+      system_.add(Link{contact, std::move(ends), gap, group});
     }
     supports_.push_back(support);
   }
@@ -219,4 +220,4 @@ double TrackModel::rail_height(double x) const {
   return height;
 }
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

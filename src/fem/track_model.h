@@ -13,7 +13,7 @@
 #include "fem/coupled_system.h"
 #include "fem/vehicle.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// A whole sleeper: a Timoshenko beam across the track.
 struct Sleeper {
@@ -127,4 +127,4 @@ class TrackModel {
   double next_x_ = 0;  // of the support to be added
 };
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

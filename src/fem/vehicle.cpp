@@ -1,6 +1,6 @@
 #include "fem/vehicle.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 /// Adds a spring and dashpot along a row of coordinates: force = k (row . q).
@@ -43,4 +43,4 @@ Structure<MatrixXd> vehicle_structure(const Vehicle& v, double gravity) {
   return s;
 }
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

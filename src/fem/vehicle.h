@@ -6,7 +6,7 @@
 
 #include "fem/implicit_part.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 struct Suspension {
   double stiffness = 0;  // [N/m]
@@ -34,4 +34,4 @@ struct Vehicle {
 /// positive when the front rises. Ports: the wheelsets' z.
 Structure<MatrixXd> vehicle_structure(const Vehicle& vehicle, double gravity);
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -10,7 +10,7 @@
 #include "fem/beam.h"
 #include "scenes/track_parts.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 using std::numbers::pi;
@@ -261,4 +261,4 @@ TEST(TrackBeams, FrequenciesOfAFreeTimoshenkoBeam) {
 }
 
 }  // namespace
-}  // namespace trackbed
+}  // namespace trackbed::fem

@@ -8,7 +8,7 @@
 #include "fem/beam.h"
 #include "scenes/track_parts.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 using std::numbers::pi;
@@ -154,4 +154,4 @@ TEST(TrackLinks, HangingBeamClosesItsGapAtTheForceOfItsBending) {
 }
 
 }  // namespace
-}  // namespace trackbed
+}  // namespace trackbed::fem

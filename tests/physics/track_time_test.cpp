@@ -7,7 +7,7 @@
 
 #include "scenes/track_parts.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 /// Displacement after `time` of a mass of frequency w that starts at 1.
@@ -82,4 +82,4 @@ TEST(TrackTime, AlphaDampsAsItsSpectralRadiusSays) {
 }
 
 }  // namespace
-}  // namespace trackbed
+}  // namespace trackbed::fem

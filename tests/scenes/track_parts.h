@@ -6,7 +6,7 @@
 #include "fem/coupled_system.h"
 #include "fem/implicit_part.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// A mass on a spring and a dashpot to the ground, pushed by a constant force; one port.
 inline std::unique_ptr<DensePart> make_mass(double mass, double stiffness, double damping, double force) {
@@ -17,4 +17,4 @@ inline std::unique_ptr<DensePart> make_mass(double mass, double stiffness, doubl
   return std::make_unique<DensePart>(std::move(s));
 }
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

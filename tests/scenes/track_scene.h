@@ -6,7 +6,7 @@
 
 #include "fem/track_model.h"
 
-namespace trackbed {
+namespace trackbed::fem {
 
 /// The thesis' track and coach; masses as in cases/transition-zone.
 inline TrackInput thesis_track() {
@@ -41,4 +41,4 @@ inline std::vector<Zone> transition(const TrackInput& in, int before, int on_bri
   return zones;
 }
 
-}  // namespace trackbed
+}  // namespace trackbed::fem

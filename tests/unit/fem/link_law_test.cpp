@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace trackbed {
+namespace trackbed::fem {
 namespace {
 
 TEST(LinkLaw, HertzIsASphereOnAFlat) {
@@ -64,4 +64,4 @@ TEST(LinkLaw, RefusesWhatPushesBackwards) {
 }
 
 }  // namespace
-}  // namespace trackbed
+}  // namespace trackbed::fem
