@@ -6,8 +6,8 @@
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <memory>
-#include <type_traits>
 
+#include "fem/modal_matrix.h"
 #include "fem/part.h"
 
 namespace trackbed::fem {
@@ -15,12 +15,32 @@ namespace trackbed::fem {
 using Eigen::MatrixXd;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Symmetric matrices of one structure with n coordinates; `Matrix` is MatrixXd or SparseMatrix.
+/// What goes with a kind of matrix: how it is factored, and how ports are kept.
+template <class Matrix>
+struct MatrixKind;
+template <>
+struct MatrixKind<SparseMatrix> {
+  using Factor = Eigen::SimplicialLLT<SparseMatrix>;
+  using Ports = SparseMatrix;
+};
+template <>
+struct MatrixKind<MatrixXd> {
+  using Factor = Eigen::LLT<MatrixXd>;
+  using Ports = MatrixXd;
+};
+template <>
+struct MatrixKind<ModalMatrix> {
+  using Factor = ModalFactor;
+  using Ports = MatrixXd;
+};
+
+/// Symmetric matrices of one structure with n coordinates.
 template <class Matrix>
 struct Structure {
-  Matrix mass, damping, stiffness;  // n x n
-  VectorXd load;                    // constant: weight [N]
-  SparseMatrix ports;               // n x p: how port forces act
+  Matrix mass, damping, stiffness;           // n x n
+  VectorXd load;                             // constant: weight [N]
+  typename MatrixKind<Matrix>::Ports ports;  // n x p: how port forces act
+  bool held = false;                         // does the stiffness alone hold it?
 };
 
 /// One structure, or many alike that share their factor (sleepers). Ports and coordinates of copy c lie
@@ -31,7 +51,7 @@ class ImplicitPart : public Part {
   /// Throws std::invalid_argument when sizes do not fit.
   explicit ImplicitPart(Structure<Matrix> structure, Index copies = 1);
 
-  Index ports() const override { return structure_.ports.cols() * u_.cols(); }
+  Index ports() const override { return port_u_.size(); }
   void move_by(const TimeScheme& scheme) override;
   void rest_by(double shift) override;
   void predict(Eigen::Ref<VectorXd> displacement, Eigen::Ref<VectorXd> velocity) override;
@@ -42,33 +62,31 @@ class ImplicitPart : public Part {
   PartEnergy energy() const override;
 
   const Structure<Matrix>& structure() const { return structure_; }
-  /// Coordinates and their rates, n x copies; may be set before the first step in time.
-  MatrixXd& displacement() { return u_; }
-  MatrixXd& velocity() { return v_; }
-  MatrixXd& acceleration() { return a_; }
+  /// Coordinates and their rates, n x copies.
   const MatrixXd& displacement() const { return u_; }
   const MatrixXd& velocity() const { return v_; }
   const MatrixXd& acceleration() const { return a_; }
+  /// Sets off from here; before motion begins.
+  void place(const MatrixXd& displacement, const MatrixXd& velocity);
 
  private:
-  using Factor = std::conditional_t<std::is_same_v<Matrix, MatrixXd>, Eigen::LLT<MatrixXd>,
-                                    Eigen::SimplicialLLT<SparseMatrix>>;
+  using Factor = typename MatrixKind<Matrix>::Factor;
   void refactor(const Matrix& matrix, double per_force);
   MatrixXd answer(const Eigen::Ref<const VectorXd>& force) const;
-  MatrixXd forces_of(const Eigen::Ref<const VectorXd>& force) const;
-  void write_ports(const MatrixXd& coordinates, Eigen::Ref<VectorXd> out) const;
-  void end_step(const MatrixXd& u, const MatrixXd& v, const MatrixXd& a, MatrixXd force);
+  void end_step(const MatrixXd& delta);
 
   Structure<Matrix> structure_;
   MatrixXd u_, v_, a_;          // n x copies
-  MatrixXd force_;              // at the start of the step, the constant load with them
+  MatrixXd unbalanced_;         // F - C v - K u at the start of the step
   MatrixXd start_u_, start_v_;  // end of the step if it ended without acceleration (Newmark's predictor)
   MatrixXd delta_;              // from there to the end of the step without coupling forces
   MatrixXd by_ports_;           // n x p: answer of the coordinates to unit forces at ports, when p is small
   MatrixXd port_compliance_;    // p x p, likewise
+  VectorXd port_u_, port_v_;    // of all copies
+  VectorXd port_force_;         // at the start of the step
+  VectorXd free_u_, free_v_;    // ports at the end of the step without coupling forces
   std::unique_ptr<Factor> factor_;
   TimeScheme scheme_;
-  double shift_ = 0;      // [1/s^2]
   double per_force_ = 1;  // 1 + alpha, or 1 on the way to rest
   bool at_rest_ = true;   // steps look for rest
   PartEnergy lost_;
@@ -76,5 +94,6 @@ class ImplicitPart : public Part {
 
 using SparsePart = ImplicitPart<SparseMatrix>;
 using DensePart = ImplicitPart<MatrixXd>;
+using ModalPart = ImplicitPart<ModalMatrix>;
 
 }  // namespace trackbed::fem

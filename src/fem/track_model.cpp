@@ -92,11 +92,10 @@ std::unique_ptr<Part> make_springs(const Springs& springs, int sleepers, const S
                                    bool whole_width) {
   const Index n = (whole_width ? 2 : 1) * sleeper.patches;
   const MatrixXd one = MatrixXd::Identity(n, n) / sleeper.patches;
-  SparseMatrix ports(n, n);
-  ports.setIdentity();
-  return std::make_unique<DensePart>(Structure<MatrixXd>{springs.mass * one, springs.damping * one,
-                                                         springs.stiffness * one, VectorXd::Zero(n), ports},
-                                     sleepers);
+  return std::make_unique<DensePart>(
+      Structure<MatrixXd>{springs.mass * one, springs.damping * one, springs.stiffness * one,
+                          VectorXd::Zero(n), MatrixXd::Identity(n, n), true},
+      sleepers);
 }
 
 TrackModel::TrackModel(const TrackInput& input, std::vector<Zone> zones)

@@ -14,7 +14,7 @@ void add_spring(Structure<MatrixXd>& s, const VectorXd& row, const Suspension& s
 Structure<MatrixXd> vehicle_structure(const Vehicle& v, double gravity) {
   constexpr Index n = 10, car = 0, first_wheel = 6;
   Structure<MatrixXd> s{MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), VectorXd::Zero(n),
-                        SparseMatrix(n, 4)};
+                        MatrixXd::Zero(n, 4)};
   s.mass.diagonal() << v.car_mass, v.car_pitch_inertia, v.bogie_mass, v.bogie_pitch_inertia, v.bogie_mass,
       v.bogie_pitch_inertia, VectorXd::Constant(4, v.wheelset_mass);
   for (const Index z : {0, 2, 4, 6, 7, 8, 9}) s.load(z) = -gravity * s.mass(z, z);
@@ -38,8 +38,7 @@ Structure<MatrixXd> vehicle_structure(const Vehicle& v, double gravity) {
       add_spring(s, row, v.primary);
     }
   }
-  for (Index w = 0; w < 4; ++w) s.ports.insert(first_wheel + w, w) = 1;
-  s.ports.makeCompressed();
+  for (Index w = 0; w < 4; ++w) s.ports(first_wheel + w, w) = 1;
   return s;
 }
 

@@ -14,7 +14,7 @@ namespace {
 double swung(double w, double time, int steps, double alpha) {
   CoupledSystem system;
   auto mass = make_mass(1, w * w, 0, 0);
-  mass->displacement()(0, 0) = 1;
+  mass->place(MatrixXd::Ones(1, 1), MatrixXd::Zero(1, 1));
   system.add(std::move(mass));
   system.move_by({time / steps, alpha});
   for (int k = 0; k < steps; ++k) system.step();
@@ -34,7 +34,7 @@ TEST(TrackTime, ErrorsFallWithTheSquareOfTheStep) {
 TEST(TrackTime, NewmarkKeepsTheAmplitude) {
   CoupledSystem system;
   auto mass = make_mass(2, 800, 0, 0);
-  mass->displacement()(0, 0) = 1;
+  mass->place(MatrixXd::Ones(1, 1), MatrixXd::Zero(1, 1));
   system.add(std::move(mass));
   system.move_by({0.03, 0});
   const double start = system.energy().parts.elastic;
@@ -63,7 +63,7 @@ TEST(TrackTime, AlphaDampsAsItsSpectralRadiusSays) {
       CoupledSystem system;
       auto mass = make_mass(1, w_dt * w_dt, 0, 0);
       DensePart& part = *mass;
-      part.displacement()(0, 0) = 1;
+      part.place(MatrixXd::Ones(1, 1), MatrixXd::Zero(1, 1));
       system.add(std::move(mass));
       system.move_by({1, alpha});
       const int steps = 400, skipped = 200;  // the double root at large w_dt takes its time

@@ -12,8 +12,7 @@ namespace trackbed::fem {
 inline std::unique_ptr<DensePart> make_mass(double mass, double stiffness, double damping, double force) {
   Structure<MatrixXd> s{MatrixXd::Constant(1, 1, mass), MatrixXd::Constant(1, 1, damping),
                         MatrixXd::Constant(1, 1, stiffness), VectorXd::Constant(1, force),
-                        SparseMatrix(1, 1)};
-  s.ports.insert(0, 0) = 1;
+                        MatrixXd::Ones(1, 1)};
   return std::make_unique<DensePart>(std::move(s));
 }
 
