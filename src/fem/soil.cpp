@@ -38,7 +38,7 @@ Section make_section(const SoilInput& in) {
   for (int k = 0; k < s.up; ++k)
     for (int j = 0; j < s.across; ++j) {
       const double y = std::abs(s.y0 + (j + 0.5) * h), depth = -(s.z0 + (k + 0.5) * h);
-      s.materials.push_back(k < below ? 1 : y < in.crest + in.shoulder_slope * depth ? 0 : -1);
+      s.materials.push_back(k < below ? 1 : y < in.crest + in.shoulder_slope * depth - 1e-9 ? 0 : -1);
     }
   return s;
 }

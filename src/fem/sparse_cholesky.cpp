@@ -1,11 +1,11 @@
 #include "fem/sparse_cholesky.h"
 
-#include <cblas.h>
 #include <cholmod.h>
 
 #include <vector>
 
 #include "base/error.h"
+#include "fem/blas.h"
 
 namespace trackbed::fem {
 
@@ -13,10 +13,6 @@ namespace {
 
 /// Right-hand sides solved together; fixed, so that results do not depend on how many threads share them.
 constexpr Eigen::Index chunk = 16;
-
-void use_one_blas_thread() {
-  openblas_set_num_threads(1);
-}
 
 struct Common {
   cholmod_common c;

@@ -1,0 +1,161 @@
+#include "fem/reduced_soil.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "fem/blas.h"
+#include "fem/soil_columns.h"
+
+namespace trackbed::fem {
+
+namespace {
+
+constexpr double gravity_acceleration = 9.81;  // [m/s2]
+/// Directions in which columns of neighbours are the same but for this share of their mass are left out.
+constexpr double same = 1e-10;
+
+/// Galerkin's matrices of all columns, before they are made orthonormal.
+class Projection {
+ public:
+  Projection(const Soil& soil, const ColumnSets& columns)
+      : soil_(soil),
+        columns_(columns),
+        each_(columns.sets.front().values.cols()),
+        planes_(static_cast<int>(columns.sets.front().values.rows()) / (3 * soil.section_size())),
+        footings_(soil.footings()) {
+    has_dashpots_ = false;
+    for (Support s : {soil.input.start, soil.input.end, soil.input.side, soil.input.base})
+      has_dashpots_ = has_dashpots_ || s == Support::absorbing;
+    const Eigen::Index n = each_ * footings_;
+    mass.setZero(n, n);
+    stiffness.setZero(n, n);
+    dashpots.setZero(has_dashpots_ ? n : 0, has_dashpots_ ? n : 0);
+    nodes.setZero(footings_ * soil.nodes_per_footing(), n);
+    gravity.setZero(n);
+    project_pairs();
+    for (int f = 0; f < footings_; ++f) project(f);
+  }
+
+  Eigen::MatrixXd mass, stiffness, dashpots, nodes;
+  Eigen::VectorXd gravity;
+
+ private:
+  struct Block {
+    Eigen::MatrixXd mass, stiffness, dashpots;
+  };
+  int begin(int f) const { return columns_.first_plane[static_cast<std::size_t>(f)]; }
+  int set_index(int f) const { return columns_.set_of[static_cast<std::size_t>(f)]; }
+  const SoilColumns& set(int f) const { return columns_.sets[static_cast<std::size_t>(set_index(f))]; }
+
+  /// What the columns of j do to those of i.
+  Block pair(int i, int j) const {
+    const int from = std::max(begin(i), begin(j)), to = std::min(begin(i), begin(j)) + planes_;
+    const Eigen::Index node = 3 * soil_.section_size(), rows = (to - from) * node;
+    auto part = [&](const Eigen::MatrixXd& m, int f) { return m.middleRows((from - begin(f)) * node, rows); };
+    const auto vi = part(set(i).values, i), vj = part(set(j).values, j);
+    Block b;
+    b.stiffness = vi.transpose() * part(set(j).forces, j);
+    b.mass = vi.transpose() * (masses_of(soil_, from, to - from).asDiagonal() * vj).eval();
+    if (has_dashpots_)
+      b.dashpots = vi.transpose() * (dashpots_of(soil_, from, to - from).asDiagonal() * vj).eval();
+    return b;
+  }
+
+  /// Pairs that are others shifted are worked out once; those of dashpots only while no end of the soil is in
+  /// them.
+  void project_pairs() {
+    struct Shared {
+      int i, j;
+      std::vector<std::array<int, 2>> others;
+    };
+    std::map<std::array<int, 3>, Shared> pairs;
+    for (int j = 0; j < footings_; ++j)
+      for (int i = 0; i <= j; ++i) {
+        if (std::abs(begin(i) - begin(j)) >= planes_) continue;
+        const auto at =
+            pairs.try_emplace({set_index(i), set_index(j), begin(j) - begin(i)}, Shared{i, j, {}}).first;
+        at->second.others.push_back({i, j});
+      }
+    std::vector<const Shared*> list;
+    for (const auto& [key, shared] : pairs) list.push_back(&shared);
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t p = 0; p < list.size(); ++p) {
+      const Block b = pair(list[p]->i, list[p]->j);
+      for (const auto& [i, j] : list[p]->others) {
+        put(mass, b.mass, i, j);
+        put(stiffness, b.stiffness, i, j);
+        if (has_dashpots_) put(dashpots, b.dashpots, i, j);
+      }
+    }
+  }
+
+  void put(Eigen::MatrixXd& to, const Eigen::MatrixXd& block, int i, int j) const {
+    if (i == j) {
+      to.block(i * each_, i * each_, each_, each_) = (block + block.transpose()) / 2;
+    } else {
+      to.block(i * each_, j * each_, each_, each_) = block;
+      to.block(j * each_, i * each_, each_, each_) = block.transpose();
+    }
+  }
+
+  /// What footings see of the columns of f, and their weight.
+  void project(int f) {
+    const Eigen::MatrixXd& values = set(f).values;
+    const int size = soil_.section_size();
+    for (int g = 0; g < footings_; ++g) {
+      const int plane = soil_.first_plane[static_cast<std::size_t>(g)] - begin(f);
+      for (int row = 0; row < soil_.nodes_across; ++row)
+        for (int a = 0; a < soil_.nodes_along; ++a) {
+          if (plane + a < 0 || plane + a >= planes_) continue;
+          const int node = (plane + a) * size + soil_.footing_section_nodes[static_cast<std::size_t>(row)];
+          nodes.block(g * soil_.nodes_per_footing() + row * soil_.nodes_along + a, f * each_, 1, each_) =
+              values.row(3 * node + 2);
+        }
+    }
+    const Eigen::VectorXd masses = masses_of(soil_, begin(f), planes_);
+    for (int node = 0; node < planes_ * size; ++node)
+      gravity.segment(f * each_, each_) -=
+          gravity_acceleration * masses[3 * node + 2] * values.row(3 * node + 2).transpose();
+  }
+
+  const Soil& soil_;
+  const ColumnSets& columns_;
+  Eigen::Index each_;
+  int planes_, footings_;
+  bool has_dashpots_;
+};
+
+/// Columns times this are orthonormal in mass; nearly dependent ones are left out.
+Eigen::MatrixXd orthonormal(Eigen::MatrixXd mass) {
+  const Eigen::VectorXd values = diagonalise(mass);
+  const Eigen::Index n = values.size();
+  Eigen::Index drop = 0;
+  while (values[drop] < same * values[n - 1]) ++drop;
+  return mass.rightCols(n - drop) * values.tail(n - drop).cwiseSqrt().cwiseInverse().asDiagonal();
+}
+
+}  // namespace
+
+ReducedSoil reduce(const Soil& soil, const ReductionInput& input) {
+  use_one_blas_thread();
+  const ColumnSets columns = make_columns(soil, input);
+  Projection all(soil, columns);
+  const Eigen::MatrixXd basis = orthonormal(std::move(all.mass));
+  Eigen::MatrixXd modes = basis.transpose() * (all.stiffness * basis).eval();
+  ReducedSoil reduced;
+  reduced.stiffness = diagonalise(modes);
+  modes = (basis * modes).eval();
+  reduced.nodes = all.nodes * modes;
+  reduced.gravity = modes.transpose() * all.gravity;
+  if (all.dashpots.size() > 0)
+    reduced.damping = modes.transpose() * (all.dashpots * modes).eval();
+  else
+    reduced.damping.setZero(modes.cols(), modes.cols());
+  reduced.damping.diagonal() += (soil.input.stiffness_damping * reduced.stiffness).array().matrix();
+  reduced.damping.diagonal().array() += soil.input.mass_damping;
+  return reduced;
+}
+
+}  // namespace trackbed::fem

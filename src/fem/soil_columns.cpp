@@ -1,0 +1,176 @@
+#include "fem/soil_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "fem/assembly.h"
+#include "fem/sparse_cholesky.h"
+
+namespace trackbed::fem {
+
+namespace {
+
+/// A run of planes of the soil, held at its cuts.
+class Window {
+ public:
+  Window(const Soil& soil, int first_plane, int planes)
+      : soil_(soil),
+        first_(first_plane),
+        planes_(planes),
+        mesh_(extrude(soil.section, 0, soil.input.element_size, planes)),
+        free_(planes * soil.section_size()),
+        factor_(hold(), free_),
+        mass_(masses_of(soil, first_plane, planes)) {
+    Freedoms all(free_.nodes());
+    all.number();
+    stiffness_ = assemble_stiffness(mesh_, soil.materials, soil.input.element, all);
+  }
+
+  /// The columns of footings whose windows this is.
+  std::vector<SoilColumns> columns(const std::vector<int>& footings, int krylov) const {
+    const Eigen::Index shapes = soil_.shapes.cols(), each = shapes * (1 + krylov);
+    std::vector<SoilColumns> sets;
+    Eigen::MatrixXd right(free_.size(), shapes * static_cast<Eigen::Index>(footings.size()));
+    right.setZero();
+    for (std::size_t f = 0; f < footings.size(); ++f) {
+      const int plane = soil_.first_plane[static_cast<std::size_t>(footings[f])] - first_;
+      sets.push_back({Eigen::MatrixXd(mass_.size(), each), {}, plane});
+      press(footings[f], right.middleCols(static_cast<Eigen::Index>(f) * shapes, shapes));
+    }
+    for (int level = 0; level <= krylov; ++level) {
+      const Eigen::MatrixXd solution = factor_.solve(right);
+      for (std::size_t f = 0; f < footings.size(); ++f) {
+        const Eigen::Index at = static_cast<Eigen::Index>(f) * shapes;
+        add_block(sets[f].values, level * shapes, solution.middleCols(at, shapes));
+        for (Eigen::Index c = 0; c < shapes; ++c)
+          right.col(at + c) = to_free(mass_.cwiseProduct(sets[f].values.col(level * shapes + c)));
+      }
+    }
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t f = 0; f < sets.size(); ++f) sets[f].forces = stiffness_ * sets[f].values;
+    return sets;
+  }
+
+ private:
+  SparseMatrix hold() {
+    for (int p = 0; p < planes_; ++p) {
+      const int plane = first_ + p;
+      const bool cut = (p == 0 && plane > 0) || (p == planes_ - 1 && plane < soil_.planes - 1);
+      for (int s = 0; s < soil_.section_size(); ++s)
+        for (int axis = 0; axis < 3; ++axis)
+          if (cut || soil_.is_held(plane, s, axis)) free_.hold(p * soil_.section_size() + s, axis);
+    }
+    free_.number();
+    return assemble_stiffness(mesh_, soil_.materials, soil_.input.element, free_);
+  }
+
+  void press(int footing, Eigen::Ref<Eigen::MatrixXd> right) const {
+    const int offset = first_ * soil_.section_size();
+    for (int row = 0; row < soil_.nodes_across; ++row)
+      for (int a = 0; a < soil_.nodes_along; ++a) {
+        const int f = free_(soil_.node(footing, a, row) - offset, 2);
+        if (f >= 0) right.row(f) = soil_.shape_forces.row(row * soil_.nodes_along + a);
+      }
+  }
+
+  Eigen::VectorXd to_free(const Eigen::VectorXd& all) const {
+    Eigen::VectorXd v(free_.size());
+    for (int n = 0; n < free_.nodes(); ++n)
+      for (int axis = 0; axis < 3; ++axis)
+        if (free_(n, axis) >= 0) v[free_(n, axis)] = all[3 * n + axis];
+    return v;
+  }
+
+  /// Puts columns at `from`, made orthonormal in mass to all before them (Gram and Schmidt, twice).
+  void add_block(Eigen::MatrixXd& values, Eigen::Index from, const Eigen::MatrixXd& solution) const {
+    for (Eigen::Index c = 0; c < solution.cols(); ++c) {
+      Eigen::VectorXd v = to_nodes(solution.col(c), free_);
+      v /= std::sqrt(v.dot(mass_.cwiseProduct(v)));
+      for (int again = 0; again < 2; ++again) {
+        const Eigen::VectorXd weighted = mass_.cwiseProduct(v);
+        const Eigen::VectorXd parts = values.leftCols(from + c).transpose() * weighted;
+        v.noalias() -= values.leftCols(from + c) * parts;
+      }
+      values.col(from + c) = v / std::sqrt(v.dot(mass_.cwiseProduct(v)));
+    }
+  }
+
+  const Soil& soil_;
+  int first_, planes_;
+  HexMesh mesh_;
+  Freedoms free_;
+  SparseCholesky factor_;
+  Eigen::VectorXd mass_;
+  SparseMatrix stiffness_;  // of all displacements, held ones too
+};
+
+template <class OfNode>
+Eigen::VectorXd of_planes(const Soil& soil, int first_plane, int planes, OfNode of_node) {
+  Eigen::VectorXd v(3 * planes * soil.section_size());
+  for (int p = 0; p < planes; ++p)
+    for (int s = 0; s < soil.section_size(); ++s)
+      v.segment<3>(3 * (p * soil.section_size() + s)) = of_node(first_plane + p, s);
+  return v;
+}
+
+/// Where the window of each footing begins; all have the same number of planes.
+struct Windows {
+  int planes;
+  std::vector<int> first_plane;
+};
+
+Windows place_windows(const Soil& soil, double length) {
+  const int elements = static_cast<int>(std::ceil(length / soil.input.element_size - 1e-9));
+  if (elements < soil.nodes_along + 1)
+    throw InputError(fmt::format("window is {} m; it must be longer than a sleeper is wide", length));
+  Windows w{std::min(elements + 1, soil.planes), {}};
+  for (int plane : soil.first_plane) {
+    const int begin = plane - (w.planes - soil.nodes_along) / 2;
+    w.first_plane.push_back(std::clamp(begin, 0, soil.planes - w.planes));
+  }
+  return w;
+}
+
+}  // namespace
+
+Eigen::VectorXd masses_of(const Soil& soil, int first_plane, int planes) {
+  return of_planes(soil, first_plane, planes,
+                   [&](int p, int s) { return Vec3(Vec3::Constant(soil.mass(p, s))); });
+}
+
+Eigen::VectorXd dashpots_of(const Soil& soil, int first_plane, int planes) {
+  return of_planes(soil, first_plane, planes, [&](int p, int s) { return soil.dashpot(p, s); });
+}
+
+ColumnSets make_columns(const Soil& soil, const ReductionInput& input) {
+  if (input.krylov < 0) throw InputError(fmt::format("krylov is {}; it must be 0 or more", input.krylov));
+  const Windows windows = place_windows(soil, input.window);
+  ColumnSets result{{}, std::vector<int>(static_cast<std::size_t>(soil.footings())), windows.first_plane};
+  const int last = soil.planes - windows.planes;
+  auto add_window = [&](int first_plane, const std::vector<int>& footings) {
+    if (footings.empty()) return;
+    for (SoilColumns& set : Window(soil, first_plane, windows.planes).columns(footings, input.krylov))
+      result.sets.push_back(std::move(set));
+  };
+  // Footings that share the window at an end have columns of their own there, the others those of the first
+  // of them.
+  std::vector<int> at_start, at_end, between;
+  for (int f = 0; f < soil.footings(); ++f) {
+    const int begin = windows.first_plane[static_cast<std::size_t>(f)];
+    (begin == 0 ? at_start : begin == last ? at_end : between).push_back(f);
+  }
+  int sets = 0;
+  for (int f : at_start) result.set_of[static_cast<std::size_t>(f)] = sets++;
+  add_window(0, at_start);
+  for (int f : at_end) result.set_of[static_cast<std::size_t>(f)] = sets++;
+  add_window(last, at_end);
+  for (int f : between) result.set_of[static_cast<std::size_t>(f)] = sets;
+  if (!between.empty())
+    add_window(windows.first_plane[static_cast<std::size_t>(between.front())], {between.front()});
+  return result;
+}
+
+}  // namespace trackbed::fem
