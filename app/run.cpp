@@ -8,6 +8,8 @@
 #include "command_line.h"
 #include "commands.h"
 #include "io/progress.h"
+#include "kept.h"
+#include "lab/track/track_run.h"
 
 namespace trackbed {
 namespace {
@@ -39,10 +41,22 @@ void print_results(const Summary& summary) {
     fmt::print("  {:{}}  {:>12.6g} {}\n", r.name, width, r.value, si_unit_of(r.dimension));
 }
 
+int run_track_case(const Document& document, const RunOptions& options, const std::filesystem::path& keep) {
+  TrackCaseInput in;
+  document.read(in);
+  const Summary summary = run_track(document, in, options, keep);
+  if (options.quiet) return 0;
+  fmt::print("{}: {}\n", in.title, duration_text(summary.wall));
+  for (const Result& r : summary.measures)
+    fmt::print("  {:28}  {:>12.6g} {}\n", r.name, r.value, si_unit_of(r.dimension));
+  fmt::print("results: {}\n", options.out.string());
+  return 0;
+}
+
 }  // namespace
 
 int run_command(int argc, char** argv) {
-  std::filesystem::path file, out;
+  std::filesystem::path file, out, keep;
   std::vector<std::string> overrides;
   RunOptions options;
   CLI::App app("Runs a case and writes its results.", "trackbed run");
@@ -53,16 +67,20 @@ int run_command(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "number of threads; 0: one for each core")
       ->check(CLI::Range(0, 4096));
+  app.add_option("--keep", keep,
+                 "folder where the reduced ground of a track is kept; default: ~/.cache/trackbed");
   app.add_flag("--quiet", options.quiet, "print nothing but errors");
   if (const auto code = parse(app, argc, argv)) return *code;
 
   const Document document(file, overrides);
-  CaseInput experiment;
-  document.read(experiment);
   options.out = out.empty()
                     ? std::filesystem::path("out") / std::filesystem::absolute(file).parent_path().filename()
                     : out;
   options.progress = stderr;
+  if (is_track_case(document))
+    return run_track_case(document, options, keep.empty() ? default_cache() : keep);
+  CaseInput experiment;
+  document.read(experiment);
   const Summary summary = run(document, experiment, options);
   if (options.quiet) return 0;
   fmt::print("{}: {} stages in {}\n", experiment.title, summary.stages.size(), duration_text(summary.wall));

@@ -1,6 +1,7 @@
 // A track case: a train on a railway track by finite elements, as data. A file with a table [track] is one.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
