@@ -139,7 +139,7 @@ struct ExplicitSoil::Parts {
         }
       }
       std::vector<double> scratch;
-#pragma omp for schedule(static)
+#pragma omp for schedule(dynamic, 4)
       for (int s = 0; s < rows; ++s) step_row(s, forces, scratch);
     }
     u.swap(before);
@@ -152,7 +152,7 @@ struct ExplicitSoil::Parts {
   double sum_rows(OfRow of_row) const {
     const int rows = soil.section_size();
     std::vector<double> sums(static_cast<std::size_t>(rows));
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
     for (int s = 0; s < rows; ++s) sums[static_cast<std::size_t>(s)] = of_row(s);
     double sum = 0;
     for (double part : sums) sum += part;
@@ -226,7 +226,7 @@ struct ExplicitSoil::Parts {
     for (int n = 0; rr > enough; ++n) {
       if (n == 10000) throw RunError("the ground under its load finds no rest; is it held?");
       const int rows = soil.section_size();
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(dynamic, 4)
       for (int s = 0; s < rows; ++s) turn_row(s, b, r, p);
       const double a = rr / sum_rows([&](int s) { return apply_row(p, s, q); });
       rr_before = rr;

@@ -8,15 +8,16 @@
 namespace trackbed::fem {
 
 struct ReductionInput {
-  int krylov = 3;  // vectors K^-1 M ... beside the static one, of each pressure shape: 1 % at worst of a
-                   // sleeper's peak
-  double window =
-      18;  // length of soil in which a footing's columns are worked out [m]; beyond it they are zero
+  /// Vectors K^-1 M ... of each pressure shape beside the static one. Errors of peaks with 3: some 0.3 %
+  /// under blows of 20 ms, 0.5 % of 10 ms, 5 % of 5 ms; docs/theory.md, section 11.4.
+  int krylov = 3;
+  /// Length of the soil in which a footing's columns are worked out [m]; beyond it they are zero. 18 m
+  /// changes nothing; 6 m changes 0.02 % under axles and 1 % under blows of 10 ms.
+  double window = 12;
 };
 
 /// Displacements u = V q of all nodes, V orthonormal in mass and stiffness:
-///     q'' + damping q' + diag(stiffness) q = nodes^T f + gravity,     displacement of footing nodes = nodes
-///     q
+///     q'' + damping q' + diag(stiffness) q = nodes^T f + gravity,     footings: u = nodes q
 /// n unknowns: about footings x shapes x (1 + krylov).
 struct ReducedSoil {
   Eigen::VectorXd stiffness;  // n, ascending: squares of the natural frequencies [1/s2]

@@ -1,5 +1,4 @@
-// The ground under the sleepers of one embankment: ballast and subgrade as one linear elastic solid with
-// ports.
+// The ground under the sleepers of an embankment: ballast and subgrade, one linear elastic solid with ports.
 //
 // A port ("footing") is the rectangle of surface nodes under one sleeper. The track sees of the soil only the
 // vertical displacements of the footings' nodes and gives it vertical forces there. All vectors over footing
@@ -12,8 +11,7 @@
 //
 // Two forms of the same soil:
 //   ExplicitSoil (explicit_soil.h)   full order, central differences, matrix-free
-//   ReducedSoil  (reduced_soil.h)    M q'' + C q' + K q = P^T f,  u = P q,  a few thousand unknowns, for
-//   implicit steps
+//   ReducedSoil  (reduced_soil.h)    M q'' + C q' + K q = P^T f,  u = P q,  few unknowns, implicit
 #pragma once
 
 #include <vector>
@@ -39,10 +37,9 @@ struct SoilInput {
   double element_size = 0.075;  // edge of the cubic elements [m], as in the thesis; all lengths are multiples
   double length = 48;           // along x, from x = 0 [m]
   double ballast_depth = 0.3;   // under the sleepers' bases [m]
-  double subgrade_depth =
-      0.975;                    // [m]; from 0.3 m to 2 m it changes a sleeper's share of an axle by 3 % only
-  double half_width = 1.8;      // from the middle of the track to the side of the ground [m]
-  double crest = 1.8;           // half width of the top of the ballast [m], half_width at most
+  double subgrade_depth = 0.975;  // [m]; from 0.3 m to 2 m a sleeper's share of an axle changes by 3 % only
+  double half_width = 1.8;        // from the middle of the track to the side of the ground [m]
+  double crest = 1.8;             // half width of the top of the ballast [m], half_width at most
   double shoulder_slope = 1.5;  // of the ballast beside the crest, across : down [-]; in steps of an element
   bool whole_width = false;     // both halves instead of the symmetric half y >= 0
   Support start = Support::absorbing;  // face x = 0: the embankment goes on
