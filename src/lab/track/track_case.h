@@ -46,7 +46,7 @@ struct GroundInput {
   std::string side = "roller", base = "fixed", ends = "absorbing";
   double mass_damping = 10, stiffness_damping = 5e-5;
   int krylov = 3;
-  double window = 18;
+  double window = 12;
 };
 
 struct SpringsInput {
