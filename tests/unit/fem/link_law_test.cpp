@@ -22,8 +22,8 @@ TEST(LinkLaw, HertzIsASphereOnAFlat) {
 TEST(LinkLaw, SlopesAreThoseOfTheForce) {
   const MeasuredSupport support{{0, 1e-3, 2e-3}, {0, 20e3, 80e3}, 9e7};
   const LinkMemory memory{1.5e-3};
-  for (const LinkLaw& law : {LinkLaw{GivenForce{7}}, LinkLaw{ClampedSpring{1.2e8, 1.2e11, 5e4}}, LinkLaw{OneSidedSpring{1e8}},
-                             LinkLaw{HertzContact{9e10}}, LinkLaw{support}}) {
+  for (const LinkLaw& law : {LinkLaw{GivenForce{7}}, LinkLaw{ClampedSpring{1.2e8, 1.2e11, 5e4}},
+                             LinkLaw{OneSidedSpring{1e8}}, LinkLaw{HertzContact{9e10}}, LinkLaw{support}}) {
     for (const double closing : {-1e-3, 1.45e-3, 1.7e-3, 5e-3}) {
       const double step = 1e-9, rate = 0.1;
       const LinkForce here = force_of(law, memory, closing, rate);
