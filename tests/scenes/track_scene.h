@@ -18,6 +18,16 @@ inline TrackInput thesis_track() {
   return in;
 }
 
+/// The same under a coach so short that few sleepers are enough.
+inline TrackInput short_track() {
+  TrackInput in = thesis_track();
+  in.sleeper.patches = 3;
+  in.vehicle.bogie_distance = 6;
+  in.vehicle.wheelbase = 2;
+  in.vehicle.car_pitch_inertia /= 10;
+  return in;
+}
+
 /// Sleepers on springs of their own.
 inline Zone spring_zone(const TrackInput& in, int sleepers, const Springs& springs = {}) {
   Zone zone;
