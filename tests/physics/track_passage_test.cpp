@@ -78,17 +78,16 @@ TEST(TrackPassage, SleepersHangBesideABridgeWhereGroundHasSettled) {
     TrackModel track(in, transition(in, 30, 10, 30, settlement));
     track.find_rest(9);
     const auto& s = track.supports();
-    hanging.push_back(
-        static_cast<int>(std::ranges::count_if(s, [&](const auto& one) { return track.gap(one) > 0; })));
+    // Behind the bridge: just before the wheels the rail lifts sleepers too.
+    hanging.push_back(static_cast<int>(
+        std::count_if(s.begin() + 40, s.end(), [&](const auto& one) { return track.gap(one) > 0; })));
     // The first sleeper behind the bridge hangs nearly by the whole settlement, far off ones lie on ground.
     if (settlement > 0) {
       EXPECT_GT(track.gap(s[40]), 0.5 * settlement);
     }
     EXPECT_EQ(track.gap(s[58]), 0);
-    for (std::size_t k = 50; k < 62; ++k)
-      if (settlement == 0) {
-        EXPECT_NEAR(track.ground_force(s[k]), track.ground_force(s[56]), 10);
-      }
+    for (std::size_t k = 50; k < 62 && settlement == 0; ++k)
+      EXPECT_NEAR(track.ground_force(s[k]), track.ground_force(s[56]), 10);
   }
   EXPECT_EQ(hanging[0], 0);
   EXPECT_LT(hanging[1], hanging[2]);
