@@ -18,6 +18,7 @@
 #include "dem/threads.h"
 #include "io/csv.h"
 #include "io/files.h"
+#include "kept.h"
 #include "lab/bed_file.h"
 #include "lab/bench_scenes.h"
 
@@ -53,12 +54,6 @@ struct BenchResult {
             100 * seconds.motion / all};
   }
 };
-
-fs::path default_cache() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return fs::path(cache) / "trackbed";
-  if (const char* home = std::getenv("HOME"); home && *home) return fs::path(home) / ".cache" / "trackbed";
-  throw InputError("neither XDG_CACHE_HOME nor HOME says where beds can be kept: give a folder with --keep");
-}
 
 double seconds_of(BenchRun& run, int steps) {
   const auto start = std::chrono::steady_clock::now();

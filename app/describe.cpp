@@ -10,6 +10,7 @@
 #include "lab/case.h"
 #include "lab/measure.h"
 #include "lab/study/study.h"
+#include "lab/track/track_case.h"
 
 namespace trackbed {
 namespace {
@@ -66,13 +67,22 @@ int describe_command(int argc, char** argv) {
   const Description study =
       describe_with("study", "A study runs a case under many conditions: one TOML file.",
                     [&](Fields& f) { declare(f, study_defaults); });
+  TrackCaseInput track_defaults;
+  const Description track = describe_with(
+      "track", "A track case is a train on a railway track: one TOML file with a table [track].",
+      [&](Fields& f) { declare(f, track_defaults); });
   if (markdown)
-    fmt::print("{}{}\n{}", to_markdown(description), measures_as_markdown(), to_markdown(study));
+    fmt::print("{}{}\n{}\n{}", to_markdown(description), measures_as_markdown(), to_markdown(track),
+               to_markdown(study));
   else if (name.empty())
-    fmt::print("{}\nalso: trackbed describe measures, trackbed describe laws, trackbed describe study\n",
-               to_text(description));
+    fmt::print(
+        "{}\nalso: trackbed describe measures, trackbed describe laws, trackbed describe study, trackbed "
+        "describe track\n",
+        to_text(description));
   else if (name == "measures")
     fmt::print("{}", measures_as_text());
+  else if (name == "track")
+    fmt::print("{}", to_text(track));
   else if (name == "study")
     fmt::print("{}", to_text(study));
   else if (name == "laws")

@@ -12,6 +12,8 @@
 #include "io/echo.h"
 #include "io/files.h"
 #include "io/progress.h"
+#include "kept.h"
+#include "lab/track/track_run.h"
 
 namespace trackbed {
 namespace {
@@ -68,18 +70,35 @@ double quantity(const std::string& text, Dimension dimension, const char* option
   return std::get<double>(value);
 }
 
-/// Whether the folder of the results has those of this very case.
-bool is_finished(const CaseInput& experiment, const RunOptions& options) {
+/// Whether the run was to be taken up again and the folder has the results of this very case.
+bool is_finished(const nlohmann::ordered_json& input, const RunOptions& options) {
   const std::filesystem::path file = options.out / "summary.json";
-  if (!std::filesystem::exists(file) || std::filesystem::exists(options.out / "checkpoint")) return false;
+  if (!options.resume || !std::filesystem::exists(file) || std::filesystem::exists(options.out / "checkpoint"))
+    return false;
   const auto json = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
-  return json.is_object() && json.contains("input") && json["input"] == echo(experiment);
+  if (!json.is_object() || !json.contains("input") || json["input"] != input) return false;
+  fmt::print("{} holds the results of this case already\n", options.out.string());
+  return true;
+}
+
+/// The passage of a train takes minutes: it is not kept on its way, and begins anew.
+int run_track_case(const Document& document, const RunOptions& options, const std::filesystem::path& keep) {
+  TrackCaseInput in;
+  document.read(in);
+  if (is_finished(echo(in), options)) return 0;
+  const Summary summary = run_track(document, in, options, keep);
+  if (options.quiet) return 0;
+  fmt::print("{}: {}\n", in.title, duration_text(summary.wall));
+  for (const Result& r : summary.measures)
+    fmt::print("  {:28}  {:>12.6g} {}\n", r.name, r.value, si_unit_of(r.dimension));
+  fmt::print("results: {}\n", options.out.string());
+  return 0;
 }
 
 }  // namespace
 
 int run_command(int argc, char** argv) {
-  std::filesystem::path file, out;
+  std::filesystem::path file, out, keep;
   std::vector<std::string> overrides;
   RunOptions options;
   std::string checkpoint_every = "10 min";
@@ -99,22 +118,23 @@ int run_command(int argc, char** argv) {
                  "wall time between two checkpoints; there is one at each stage's end and when the run is "
                  "stopped (SIGTERM, SIGINT)")
       ->capture_default_str();
+  app.add_option("--keep", keep,
+                 "folder where the reduced ground of a track is kept; default: ~/.cache/trackbed");
   app.add_flag("--quiet", options.quiet, "print nothing but errors");
   if (const auto code = parse(app, argc, argv)) return *code;
 
   const Document document(file, overrides);
-  CaseInput experiment;
-  document.read(experiment);
   options.out = out.empty()
                     ? std::filesystem::path("out") / std::filesystem::absolute(file).parent_path().filename()
                     : out;
   options.progress = stderr;
   options.checkpoint_every = quantity(checkpoint_every, Dimension::time, "--checkpoint-every");
+  if (is_track_case(document))
+    return run_track_case(document, options, keep.empty() ? default_cache() : keep);
+  CaseInput experiment;
+  document.read(experiment);
+  if (is_finished(echo(experiment), options)) return 0;
   options.stop = [] { return stop_signal != 0; };
-  if (options.resume && is_finished(experiment, options)) {
-    fmt::print("{} holds the results of this case already\n", options.out.string());
-    return 0;
-  }
   stop_on_signals();
   Summary summary;
   try {

@@ -48,6 +48,11 @@ constexpr std::array stress_units = {Unit{"Pa"}, Unit{"kPa", 1e3}, Unit{"MPa", 1
 constexpr std::array stiffness_units = {Unit{"N/m"}, Unit{"kN/m", 1e3}, Unit{"MN/m", 1e6}, Unit{"kN/mm", 1e6},
                                         Unit{"N/mm", 1e3}};
 constexpr std::array energy_units = {Unit{"J"}, Unit{"kJ", 1e3}, Unit{"mJ", 1, 1e3}};
+constexpr std::array damping_units = {Unit{"N s/m"}, Unit{"kN s/m", 1e3}, Unit{"MN s/m", 1e6}};
+constexpr std::array rotational_stiffness_units = {Unit{"N m/rad"}, Unit{"kN m/rad", 1e3},
+                                                   Unit{"MN m/rad", 1e6}};
+constexpr std::array second_moment_units = {Unit{"m^4"}, Unit{"cm^4", 1, 1e8}, Unit{"mm^4", 1, 1e12}};
+constexpr std::array hertz_constant_units = {Unit{"N/m^1.5"}};
 
 struct Table {
   std::string_view name;  // "length"
@@ -56,17 +61,29 @@ struct Table {
 
 // In the order of the enum.
 constexpr std::array tables = {
-    Table{"number", none_units},       Table{"length", length_units},
-    Table{"area", area_units},         Table{"volume", volume_units},
-    Table{"time", time_units},         Table{"frequency", frequency_units},
-    Table{"velocity", velocity_units}, Table{"acceleration", acceleration_units},
-    Table{"angle", angle_units},       Table{"angular velocity", angular_velocity_units},
-    Table{"mass", mass_units},         Table{"density", density_units},
-    Table{"force", force_units},       Table{"moment", moment_units},
-    Table{"stress", stress_units},     Table{"stiffness", stiffness_units},
+    Table{"number", none_units},
+    Table{"length", length_units},
+    Table{"area", area_units},
+    Table{"volume", volume_units},
+    Table{"time", time_units},
+    Table{"frequency", frequency_units},
+    Table{"velocity", velocity_units},
+    Table{"acceleration", acceleration_units},
+    Table{"angle", angle_units},
+    Table{"angular velocity", angular_velocity_units},
+    Table{"mass", mass_units},
+    Table{"density", density_units},
+    Table{"force", force_units},
+    Table{"moment", moment_units},
+    Table{"stress", stress_units},
+    Table{"stiffness", stiffness_units},
     Table{"energy", energy_units},
+    Table{"damping", damping_units},
+    Table{"rotational stiffness", rotational_stiffness_units},
+    Table{"second moment of area", second_moment_units},
+    Table{"Hertz constant", hertz_constant_units},
 };
-static_assert(tables.size() == static_cast<std::size_t>(Dimension::energy) + 1);
+static_assert(tables.size() == static_cast<std::size_t>(Dimension::hertz_constant) + 1);
 
 const Table& table_of(Dimension dimension) {
   return tables[static_cast<std::size_t>(dimension)];

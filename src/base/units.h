@@ -9,23 +9,27 @@ namespace trackbed {
 
 /// What a number measures. The SI unit of each stands beside it.
 enum class Dimension {
-  none,              // -
-  length,            // m
-  area,              // m^2
-  volume,            // m^3
-  time,              // s
-  frequency,         // Hz
-  velocity,          // m/s
-  acceleration,      // m/s^2
-  angle,             // rad
-  angular_velocity,  // rad/s
-  mass,              // kg
-  density,           // kg/m^3
-  force,             // N
-  moment,            // N m
-  stress,            // Pa
-  stiffness,         // N/m
-  energy,            // J
+  none,                  // -
+  length,                // m
+  area,                  // m^2
+  volume,                // m^3
+  time,                  // s
+  frequency,             // Hz
+  velocity,              // m/s
+  acceleration,          // m/s^2
+  angle,                 // rad
+  angular_velocity,      // rad/s
+  mass,                  // kg
+  density,               // kg/m^3
+  force,                 // N
+  moment,                // N m
+  stress,                // Pa
+  stiffness,             // N/m
+  energy,                // J
+  damping,               // N s/m
+  rotational_stiffness,  // N m/rad
+  second_moment,         // m^4, of an area
+  hertz_constant,        // N/m^1.5
 };
 
 std::string_view name_of(Dimension dimension);     ///< "length"

@@ -241,6 +241,10 @@ void Document::fail(std::string_view dotted_key, std::string_view problem, std::
   std::abort();  // not reached: there is an error
 }
 
+bool Document::has(std::string_view key) const {
+  return parsed_->root.find(key) != nullptr;
+}
+
 const fs::path& Document::file() const {
   return parsed_->file;
 }

@@ -33,6 +33,9 @@ class Document {
     read_with([&](Fields& f) { declare(f, input); });
   }
 
+  /// Whether the file has this key at its top level.
+  bool has(std::string_view key) const;
+
   /// For errors found later: throws InputError that points at a key, for example "stages.2.wall" (see
   /// Fields::here).
   [[noreturn]] void fail(std::string_view dotted_key, std::string_view problem, std::string_view hint) const;

@@ -3,6 +3,7 @@
 
 #include "bad_files.h"
 #include "lab/run.h"
+#include "lab/track/track_case.h"
 
 namespace trackbed {
 namespace {
@@ -14,6 +15,19 @@ Simulation prepared(const fs::path& file, const std::vector<std::string>& overri
   CaseInput input;
   document.read(input);
   return prepare_run(document, input);
+}
+
+void prepared_track(const fs::path& file) {
+  const Document document(file);
+  TrackCaseInput input;
+  document.read(input);
+  check_track(document, input);
+}
+
+TEST(BadFiles, Track) {
+  expect_messages<TrackCaseInput>(
+      fs::path(TRACKBED_ROOT) / "tests/input/track",
+      [](const Document& document, const TrackCaseInput& input) { check_track(document, input); });
 }
 
 TEST(BadFiles, Case) {
@@ -55,7 +69,13 @@ TEST(Meshes, InwardFacetsOfAStoneAreTurned) {
 TEST(Cases, AllThatShipCanBeRun) {
   const std::vector<fs::path> files = expand_pattern(fs::path(TRACKBED_ROOT) / "cases/*/case.toml");
   ASSERT_FALSE(files.empty());
-  for (const fs::path& file : files) EXPECT_NO_THROW(prepared(file)) << file;
+  for (const fs::path& file : files) {
+    if (is_track_case(Document(file))) {
+      EXPECT_NO_THROW(prepared_track(file)) << file;
+    } else {
+      EXPECT_NO_THROW(prepared(file)) << file;
+    }
+  }
 }
 
 TEST(Cases, TakeOtherValues) {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lab/track/track_run.h"
+
 namespace trackbed {
 
 void declare(Fields& f, ExpectedMeasure& in) {
@@ -31,13 +33,26 @@ const StageSummary& stage_of(const Summary& summary, const std::string& name) {
   return *found;
 }
 
+namespace {
+
+Summary run_one(const Document& document, const RunOptions& options) {
+  if (is_track_case(document)) {
+    TrackCaseInput in;
+    document.read(in);
+    return run_track(document, in, options, {});
+  }
+  CaseInput experiment;
+  document.read(experiment);
+  return run(document, experiment, options);
+}
+
+}  // namespace
+
 Summary run_and_compare(const std::string& name, const std::filesystem::path& out) {
   const std::filesystem::path folder = std::filesystem::path(TRACKBED_ROOT) / "cases" / name;
   const auto expected = read_input<Expected>(folder / "expected.toml");
   const Document document(folder / "case.toml", expected.set);
-  CaseInput experiment;
-  document.read(experiment);
-  const Summary summary = run(document, experiment, {.out = out, .threads = 1, .quiet = true});
+  const Summary summary = run_one(document, {.out = out, .threads = 1, .quiet = true});
   for (const ExpectedMeasure& m : expected.measures)
     EXPECT_NEAR(value_of(summary.measures, m.name), m.value, m.tolerance) << m.name << ": " << m.reason;
   return summary;

@@ -11,6 +11,7 @@
 #include "io/echo.h"
 #include "lab/case.h"
 #include "lab/checks.h"
+#include "lab/track/track_case.h"
 
 namespace trackbed {
 
@@ -120,6 +121,14 @@ std::vector<Condition> conditions_of(const Document& document, const StudyInput&
   return all;
 }
 
+/// What a case understands of its file and changes.
+template <class Input>
+nlohmann::ordered_json input_of(const std::filesystem::path& file, const std::vector<std::string>& set) {
+  Input input;
+  Document(file, set).read(input);
+  return echo(input);
+}
+
 Member make_member(const StudyInput& study, const std::vector<Condition>& conditions, std::size_t condition,
                    std::uint64_t seed) {
   Member member;
@@ -128,11 +137,13 @@ Member make_member(const StudyInput& study, const std::vector<Condition>& condit
   member.name = fmt::format("{}-seed-{}", plain(conditions[condition].name), seed);
   member.set = study.set;
   for (const std::string& change : conditions[condition].set) member.set.push_back(change);
-  member.set.push_back(fmt::format("seed={}", seed));
   try {
-    CaseInput experiment;
-    Document(study.base, member.set).read(experiment);
-    member.input = echo(experiment);
+    if (is_track_case(Document(study.base))) {  // nothing in it is drawn by chance
+      member.input = input_of<TrackCaseInput>(study.base, member.set);
+      return member;
+    }
+    member.set.push_back(fmt::format("seed={}", seed));
+    member.input = input_of<CaseInput>(study.base, member.set);
   } catch (const InputError& error) {
     throw InputError(fmt::format("the condition {}: {}", conditions[condition].name, error.what()));
   }

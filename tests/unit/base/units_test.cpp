@@ -24,7 +24,7 @@ std::string problem(std::string_view text, Dimension dimension) {
   return std::holds_alternative<std::string>(parsed) ? std::get<std::string>(parsed) : "no problem";
 }
 
-constexpr Dimension last_dimension = Dimension::energy;
+constexpr Dimension last_dimension = Dimension::hertz_constant;
 
 TEST(Units, DecimalUnitsGiveTheNearestDouble) {
   EXPECT_EQ(si("300 mm", Dimension::length), 0.3);
