@@ -73,7 +73,8 @@ double quantity(const std::string& text, Dimension dimension, const char* option
 /// Whether the run was to be taken up again and the folder has the results of this very case.
 bool is_finished(const nlohmann::ordered_json& input, const RunOptions& options) {
   const std::filesystem::path file = options.out / "summary.json";
-  if (!options.resume || !std::filesystem::exists(file) || std::filesystem::exists(options.out / "checkpoint"))
+  if (!options.resume || !std::filesystem::exists(file) ||
+      std::filesystem::exists(options.out / "checkpoint"))
     return false;
   const auto json = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
   if (!json.is_object() || !json.contains("input") || json["input"] != input) return false;

@@ -115,9 +115,8 @@ class StudyRun {
 
   Job job_of(const Member& member) const {
     Job job{member.name, folder_of(member), {}, fingerprint(member)};
-    job.arguments = {"run",       fs::absolute(study_.base).string(), "--out",  job.folder.string(),
-                     "--threads", std::to_string(o_.threads),         "--quiet",
-                     "--resume"};
+    job.arguments = {"run",       fs::absolute(study_.base).string(), "--out",   job.folder.string(),
+                     "--threads", std::to_string(o_.threads),         "--quiet", "--resume"};
     for (const std::string& change : member.set) job.arguments.insert(job.arguments.end(), {"--set", change});
     return job;
   }

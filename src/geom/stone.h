@@ -17,8 +17,8 @@ struct Stone {
 };
 
 /// Fills a solid with pebbles and moves all to its principal frame. Volume, centre and inertia are those of
-/// the mesh; so is the volume of the pebbles when they are enlarged. The mesh must come from make_solid. Throws InputError, naming the stone, when it cannot be
-/// filled.
+/// the mesh; so is the volume of the pebbles when they are enlarged. The mesh must come from make_solid.
+/// Throws InputError, naming the stone, when it cannot be filled.
 Stone make_stone(const TriangleMesh& solid, const std::string& name, const ClumpFilling& filling);
 
 }  // namespace trackbed
