@@ -10,9 +10,9 @@
 #include "command_line.h"
 #include "commands.h"
 #include "io/echo.h"
-#include "io/files.h"
 #include "io/progress.h"
 #include "kept.h"
+#include "lab/study/results.h"
 #include "lab/track/track_run.h"
 
 namespace trackbed {
@@ -72,12 +72,10 @@ double quantity(const std::string& text, Dimension dimension, const char* option
 
 /// Whether the run was to be taken up again and the folder has the results of this very case.
 bool is_finished(const nlohmann::ordered_json& input, const RunOptions& options) {
-  const std::filesystem::path file = options.out / "summary.json";
-  if (!options.resume || !std::filesystem::exists(file) ||
-      std::filesystem::exists(options.out / "checkpoint"))
-    return false;
-  const auto json = nlohmann::ordered_json::parse(read_file(file), nullptr, false);
-  if (!json.is_object() || !json.contains("input") || json["input"] != input) return false;
+  if (!options.resume || std::filesystem::exists(options.out / "checkpoint")) return false;
+  Member alone;  // what its folder says is judged as in a study
+  alone.input = input;
+  if (outcome_of(alone, options.out).status != MemberStatus::done) return false;
   fmt::print("{} holds the results of this case already\n", options.out.string());
   return true;
 }

@@ -232,10 +232,6 @@ class StudyRun {
   Clock::time_point start_ = Clock::now(), told_ = start_;
 };
 
-}  // namespace
-
-namespace {
-
 /// The case's seed and what conditions change are not for --set to change.
 void add_changes(const std::vector<std::string>& changes, const Document& document, StudyInput& study) {
   std::set<std::string> taken{"seed"};
