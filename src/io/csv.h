@@ -20,6 +20,10 @@ struct Column {
   std::string name;
   Dimension dimension = Dimension::none;
   bool is_text = false;  // holds words: headed by its name alone
+  template <class A>
+  void archive(A& a) {
+    a(name, dimension, is_text);
+  }
 };
 
 /// A number or a word of a table.
@@ -55,6 +59,44 @@ class CsvWriter {
   std::filesystem::path path_;
   std::size_t n_columns_ = 0, rows_ = 0;
   std::unique_ptr<std::FILE, Close> file_;
+};
+
+/// A number as a field that reads back to the same bits; nothing for what is not known: a spreadsheet leaves
+/// such cells out.
+std::string csv_number(double value);
+
+/// Rows of fields that are text already, written as a whole.
+class CsvRows {
+ public:
+  void add(const std::vector<std::string>& fields);
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  std::string text_;
+};
+
+/// A table read whole, its columns by name; what this or another program has written.
+class CsvTable {
+ public:
+  /// Throws InputError when the file cannot be read, or a line has other fields than the header.
+  explicit CsvTable(const std::filesystem::path& path);
+
+  std::size_t rows() const { return rows_.size(); }
+  bool has(std::string_view column) const { return find(column) >= 0; }
+  /// A column of numbers, in SI by the unit that stands in its heading, "force [kN]"; without one they are
+  /// in SI. Throws InputError when there is no such column, the unit is of another dimension, or a field is
+  /// no number.
+  std::vector<double> numbers(std::string_view column, Dimension dimension) const;
+  /// A column of words. Throws InputError when there is no such column.
+  std::vector<std::string> texts(std::string_view column) const;
+
+ private:
+  int find(std::string_view column) const;  // -1: there is none
+  std::size_t require(std::string_view column) const;
+
+  std::filesystem::path path_;
+  std::vector<std::string> names_, units_;  // of the columns; a unit may be empty
+  std::vector<std::vector<std::string>> rows_;
 };
 
 }  // namespace trackbed

@@ -12,6 +12,7 @@
 #include "io/files.h"
 #include "io/progress.h"
 #include "lab/checkpoint.h"
+#include "lab/checks.h"
 #include "lab/measure.h"
 
 namespace trackbed {
@@ -171,6 +172,7 @@ class Course {
     recorder_.close_stage(sim_);
     found.measures = measured(sim_);
     found.results = stages_[stage_].stage->close(sim_);
+    if (const ResultTable* table = stages_[stage_].stage->table()) recorder_.write_table(sim_, *table);
     sim_.restore(start_.before);
     check_count(sim_, start_.stones, found.results);
     found.wall = stage_wall_ + seconds_since(stage_clock_);
@@ -287,9 +289,7 @@ std::vector<NamedStage> stages_of(const CaseInput& experiment) {
 
 Simulation prepare_run(const Document& document, const CaseInput& experiment) {
   Simulation sim = make_simulation(document, experiment);
-  for (const std::string& name : experiment.record.measures)
-    if (const auto hint = hint_for_measure(sim, name))
-      document.fail("record.measures", "there is no measure called " + name, *hint);
+  check_measures(document, sim, "record.measures", experiment.record.measures);
   return sim;
 }
 
