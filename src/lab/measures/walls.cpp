@@ -1,7 +1,8 @@
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <string_view>
 #include <tuple>
+#include <vector>
 
 #include "dem/touching.h"
 #include "lab/measures/measures.h"
@@ -19,34 +20,52 @@ void add_vector(std::vector<Measure>& all, const std::string& name, Dimension di
                    [get, a](const Simulation& sim) { return get(sim)[a]; }});
 }
 
-/// The parts of a body that stones press on, by where the normals of their contacts point.
-enum class Face { base, sides, ends };
+/// The parts of a body that stones press on.
+enum class Face { base, slopes, sides, ends };
 
-/// The longer of a body's two horizontal axes, 0 or 1, in its own frame: that of a sleeper.
-int long_axis(const WallShape& shape) {
+/// A facet's direction and what part of the body it belongs to.
+struct Facing {
+  Vec3 outwards;  // in the body's frame
+  Face face;
+};
+
+/// Facets of a body by where they face as it was placed; its ends are where it is longest.
+std::vector<Facing> facings_of(const Simulation& sim, std::size_t wall) {
+  constexpr double level = 0.02;  // sine of about a degree
+  const TriangleMesh& mesh = sim.model.walls[wall].shape.mesh;
+  const Quat& placed = sim.wall_reference[wall].orientation;
   Eigen::AlignedBox3d box;
-  for (const Vec3& v : shape.mesh.vertices) box.extend(v);
-  return box.sizes().x() >= box.sizes().y() ? 0 : 1;
+  for (const Vec3& v : mesh.vertices) box.extend(placed * v);
+  const Eigen::Index along = box.sizes().x() >= box.sizes().y() ? 0 : 1;
+  std::vector<Facing> all;
+  for (std::size_t f = 0; f < mesh.facets.size(); ++f) {
+    const auto [a, b, c] = mesh.corners(f);
+    const Vec3 outwards = (b - a).cross(c - a).normalized(), n = (placed * outwards).cwiseAbs();
+    Face face = Face::slopes;
+    if (n.z() < level) face = n[along] > n[1 - along] ? Face::ends : Face::sides;
+    if (n.z() > 1 - level * level) face = Face::base;
+    all.push_back({outwards, face});
+  }
+  return all;
 }
 
-/// Which face a contact with this normal (body frame) presses on: that of the largest part of the normal.
-Face face_of(const Vec3& normal, int along) {
-  Eigen::Index axis = 0;
-  normal.cwiseAbs().maxCoeff(&axis);
-  if (axis == 2) return Face::base;
-  return axis == along ? Face::ends : Face::sides;
+/// Which part a contact presses on whose normal (body frame) points into the body: that of the facet which
+/// faces it best; a contact on an edge has a normal between those of two facets.
+Face face_of(const Vec3& inwards, const std::vector<Facing>& facings) {
+  return std::ranges::min_element(facings, {}, [&](const Facing& f) { return f.outwards.dot(inwards); })
+      ->face;
 }
 
-/// Elastic force of the stones on one face of a body [N].
+/// Elastic force of the stones on one part of a body [N].
 Vec3 force_on_face(const Simulation& sim, std::size_t wall, Face face) {
-  const int along = long_axis(sim.model.walls[wall].shape);
+  const std::vector<Facing> facings = facings_of(sim, wall);
   const Quat back = sim.state.walls[wall].pose.orientation.conjugate();
   Vec3 force = Vec3::Zero();
   for (const WallBlock& block : sim.state.wall_blocks)
     for (const WallPair& pair : block.pairs)
       if (pair.wall == static_cast<int>(wall))
         visit_pair(sim.model, sim.state, block, pair, [&](const Touching& t) {
-          if (face_of(back * t.normal, along) == face) force += t.force();
+          if (face_of(back * t.normal, facings) == face) force += t.force();
         });
   return force;
 }
@@ -69,11 +88,12 @@ std::vector<Measure> wall_measures(const Wall& wall, std::size_t index) {
   add_vector(all, name + ".velocity", Dimension::velocity, "of " + name + ", half a step ago",
              [state](const Simulation& sim) { return state(sim).velocity; });
   if (wall.body)
-    for (const auto& [face, part, where] : {std::tuple(Face::base, "base", "its underside and top"),
-                                            {Face::sides, "sides", "its long sides"},
-                                            {Face::ends, "ends", "its ends"}})
+    for (const auto& [face, part, where] : {std::tuple(Face::base, "base", "underside and top"),
+                                            {Face::slopes, "slopes", "the inclined faces"},
+                                            {Face::sides, "sides", "the long sides"},
+                                            {Face::ends, "ends", "the ends"}})
       add_vector(all, name + ".force_" + part, Dimension::force,
-                 "of the stones on " + name + " whose contacts face " + where,
+                 std::string("of the stones on ") + where + " of " + name,
                  [index, face = face](const Simulation& sim) { return force_on_face(sim, index, face); });
   if (wall.body)
     add_vector(all, name + ".applied_force", Dimension::force,

@@ -153,5 +153,36 @@ TEST(Measures, WallsTellHowFarTheyHaveGone) {
   EXPECT_NEAR(value_of(sim, "plane.displacement_z"), -0.002, 1e-15);
 }
 
+/// A block of 0.3 x 0.1 x 0.2 m on a wedge of 45 degrees along x, with a ball pressed 0.1 mm into its
+/// underside's slope, its long side, its end and its top: 100 N each. `turn` is the frame it happens to be
+/// in.
+Simulation pressed_wedge(const Quat& turn) {
+  Simulation sim = scenes::make_scene(with_gravity());
+  TriangleMesh mesh = wedge_mesh({0.3, 0.1, 0.2}, std::numbers::pi / 4, 1);
+  for (Vec3& v : mesh.vertices) v = turn.conjugate() * v;
+  Wall sleeper{make_mesh_wall("sleeper", mesh), 0, BodyProperties{}};
+  add_wall(sim, sleeper, {Vec3::Zero(), turn});
+  const double away = 0.02 - 1e-4;
+  const Vec3 slope(std::sqrt(0.5), 0, -std::sqrt(0.5));
+  scenes::add_ball(sim, Vec3(0.075, 0, -0.075) + away * slope);
+  scenes::add_ball(sim, {0, 0.05 + away, 0.1});
+  scenes::add_ball(sim, {0.15 + away, 0, 0.1});
+  scenes::add_ball(sim, {0, 0, 0.2 + away});
+  sim.changed();
+  return sim;
+}
+
+TEST(Measures, ForceOfASleeperIsSplitBetweenItsFaces) {
+  for (const Quat& turn : {Quat::Identity(), Quat(Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()))}) {
+    const Simulation sim = pressed_wedge(turn);
+    EXPECT_NEAR(value_of(sim, "sleeper.force_slopes_x"), -100 * std::sqrt(0.5), 1e-6);
+    EXPECT_NEAR(value_of(sim, "sleeper.force_slopes_z"), 100 * std::sqrt(0.5), 1e-6);
+    EXPECT_NEAR(value_of(sim, "sleeper.force_sides_y"), -100, 1e-6);
+    EXPECT_NEAR(value_of(sim, "sleeper.force_ends_x"), -100, 1e-6);
+    EXPECT_NEAR(value_of(sim, "sleeper.force_base_z"), -100, 1e-6);
+    EXPECT_NEAR(value_of(sim, "sleeper.force_base_x"), 0, 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace trackbed
