@@ -13,6 +13,7 @@
 #include "lab/cyclic_box_case.h"
 #include "lab/kept_bed.h"
 #include "lab/run.h"
+#include "lab/stages/parting.h"
 
 namespace trackbed {
 namespace {
@@ -156,12 +157,16 @@ void run_stage(NamedStage& named, Simulation& sim, const BenchBeds& beds) {
   carry_out(sim, *named.stage);
 }
 
-/// Finer stones have corners that lie in their neighbours. Local damping near 1 takes nearly all that such
-/// overlaps have stored while they open, so that no stone is thrown.
-void part_gently(Simulation& sim) {
-  const double damping = std::exchange(sim.model.local_damping, 0.999);
-  for (int k = 0; k < 1500; ++k) sim.step();
-  sim.model.local_damping = damping;
+/// Finer stones have corners that lie in their neighbours.
+void part(Simulation& sim) {
+  const Conditions before = sim.model;
+  Parting parting;
+  parting.open(sim, 0.1);
+  while (!parting.is_done(sim, 0.005, 10)) {
+    parting.control(sim);
+    sim.step();
+  }
+  sim.restore(before);
 }
 
 void need_bed(const BenchScene& scene, const BenchBeds& beds);
@@ -180,7 +185,7 @@ void take_over_bed(const BenchScene& scene, Experiment& experiment, const BenchB
   sim.state.wall_blocks.clear();
   sim.model.domain.setEmpty();  // stones lie above the rim of the box
   sim.changed();
-  part_gently(sim);
+  part(sim);
   run_stage(experiment.stages[experiment.stages.size() - 2], sim, beds);
 }
 
