@@ -150,9 +150,7 @@ void declare(Fields& f, CaseInput& in) {
   f.table("regions", in.regions, region_kinds(), "parts of space by name, for the stages that name one");
   f.section("numerics", in.numerics, "gravity, damping, time step, search");
   f.section("record", in.record, "what is written");
-  f.sequence("stages", in.stages, stage_kinds(), "what happens, in this order");
-  for (const OneOf<StageInput>& stage : in.stages)
-    if (stage.input->name.empty()) stage.input->name = stage.kind;
+  declare_stages(f, in.stages, "what happens, in this order");
   f.check(!in.stages.empty(), "stages", "there is no stage", "add [[stages]] with a kind");
   f.check(!in.materials.empty(), "materials", "there is no material", "add [materials.ballast]");
 }

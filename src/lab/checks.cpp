@@ -10,6 +10,7 @@
 #include "dem/step.h"
 #include "io/nearest.h"
 #include "lab/grading.h"
+#include "lab/recorder.h"
 
 namespace trackbed {
 namespace {
@@ -69,6 +70,13 @@ void check_region(const Document& document, const CaseInput& in, const std::stri
   refuse_unknown(document, key, "region", name, known);
 }
 
+void check_measures(const Document& document, const Simulation& sim, const std::string& key,
+                    const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    if (const auto hint = hint_for_measure(sim, name))
+      document.fail(key, "there is no measure called " + name, *hint);
+}
+
 void check_names(const Document& document, const CaseInput& in) {
   std::string container;
   for (const auto& [name, wall] : in.walls) {
@@ -89,22 +97,29 @@ void check_names(const Document& document, const CaseInput& in) {
   }
 }
 
-void check_stages(const Document& document, const CaseInput& in, const Simulation& sim) {
-  std::map<std::string, std::size_t> seen;
-  for (std::size_t k = 0; k < in.stages.size(); ++k) {
-    const StageInput& stage = *in.stages[k].input;
-    if (const auto [first, is_new] = seen.emplace(stage.name, k); !is_new)
+void check_stage_list(const Document& document, const std::vector<OneOf<StageInput>>& stages,
+                      const CaseInput& in, const Simulation& sim) {
+  std::map<std::string, std::string> seen;
+  for (const OneOf<StageInput>& one : stages) {
+    const StageInput& stage = *one.input;
+    if (const auto [first, is_new] = seen.emplace(stage.name, stage.here); !is_new)
       document.fail(
           stage.here + ".name", fmt::format("two stages are called {}", stage.name),
-          fmt::format("the other is stages.{}; a stage without name is called by its kind: give each "
-                      "a name of its own",
+          fmt::format("the other is {}; a stage without name is called by its kind: give each a name of its "
+                      "own",
                       first->second));
     stage.check(document, in, sim);
   }
+}
+
+void check_stages(const Document& document, const CaseInput& in, const Simulation& sim) {
+  check_stage_list(document, in.stages, in, sim);
   std::vector<std::string> names;
-  for (const auto& [name, place] : seen) names.push_back(name);
+  for (const OneOf<StageInput>& stage : in.stages) names.push_back(stage.input->name);
+  std::ranges::sort(names);
   for (const std::string& name : in.record.stages)
-    if (!seen.contains(name)) refuse_unknown(document, "record.stages", "stage", name, names);
+    if (std::ranges::find(names, name) == names.end())
+      refuse_unknown(document, "record.stages", "stage", name, names);
 }
 
 void check_in_plane(const Document& document, const Simulation& sim, const std::string& key,

@@ -30,10 +30,18 @@ void check_stone_set(const Document& document, const CaseInput& experiment, cons
 void check_region(const Document& document, const CaseInput& experiment, const std::string& key,
                   const std::string& name);
 
+/// Refuse a name that is no measure.
+void check_measures(const Document& document, const Simulation& sim, const std::string& key,
+                    const std::vector<std::string>& names);
+
 /// Names of walls and bodies: plain, and each once. There is one container at most.
 void check_names(const Document& document, const CaseInput& experiment);
 
-/// Names of stages: each once; then all that the stages themselves know (StageInput::check).
+/// Names of the stages of one list: each once; then all that the stages themselves know (StageInput::check).
+void check_stage_list(const Document& document, const std::vector<OneOf<StageInput>>& stages,
+                      const CaseInput& experiment, const Simulation& sim);
+
+/// The stages of the case, and the names of those that are recorded.
 void check_stages(const Document& document, const CaseInput& experiment, const Simulation& sim);
 
 /// What must be so in a model of two dimensions: walls stand on the plane and reach through the thickness.

@@ -90,6 +90,18 @@ wall = "box.front"
 force = "200 N"
 direction = [0, 1, 0]
 duration = "8 ms"
+[[stages]]
+kind = "repeat"
+times = 3
+measures = ["coordination_number"]
+  [[stages.stages]]
+  kind = "hold"
+  duration = "3 ms"
+  [[stages.stages]]
+  kind = "move"
+  wall = "box.right"
+  velocity = ["-0.2 m/s", "0 m/s", "0 m/s"]
+  duration = "3 ms"
 )toml";
 
 constexpr const char* replaced = R"toml(

@@ -13,11 +13,12 @@ namespace {
 
 struct MoveInput : StageInput {
   std::string wall;
-  Vec3 velocity = Vec3::Zero();    // [m/s]
-  std::optional<double> distance;  // [m]
-  std::optional<double> duration;  // [s]
-  std::optional<double> force;     // [N]
-  std::vector<double> probes;      // [m]
+  Vec3 velocity = Vec3::Zero();        // [m/s]
+  std::optional<double> distance;      // [m]
+  std::optional<double> displacement;  // [m]
+  std::optional<double> duration;      // [s]
+  std::optional<double> force;         // [N]
+  std::vector<double> probes;          // [m]
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override;
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
@@ -27,6 +28,9 @@ void declare(Fields& f, MoveInput& in) {
   f.text(required("wall"), in.wall, "wall that moves, or body, along axes in which it is not free");
   f.vector(required("velocity"), in.velocity, Dimension::velocity, {}, "its velocity");
   f.quantity("distance", in.distance, Dimension::length, {.above = 0}, "stop when it has gone this far");
+  f.quantity("displacement", in.displacement, Dimension::length, {},
+             "stop when its displacement along the velocity, from where it stood at the start of the run or "
+             "was placed, is this or more");
   f.quantity("duration", in.duration, Dimension::time, {.above = 0}, "stop after this time");
   f.quantity("force", in.force, Dimension::force, {.above = 0},
              "stop when the stones push against the motion with this force");
@@ -36,8 +40,8 @@ void declare(Fields& f, MoveInput& in) {
           "sort them");
   f.check(in.velocity.norm() > 0, "velocity", "the velocity is zero",
           "give a velocity, or use the stage hold");
-  f.check(in.distance || in.duration || in.force, "duration", "nothing says when the motion ends",
-          "give distance, duration or force");
+  f.check(in.distance || in.displacement || in.duration || in.force, "duration",
+          "nothing says when the motion ends", "give distance, displacement, duration or force");
 }
 
 void MoveInput::check(const Document& document, const CaseInput&, const Simulation& sim) const {
@@ -67,6 +71,7 @@ class Move : public Stage {
   }
   bool finished(const Simulation& sim) override {
     if (in_.distance && distance(sim) >= *in_.distance) return true;
+    if (in_.displacement && displacement(sim) >= *in_.displacement) return true;
     if (in_.duration && sim.state.time - start_ >= *in_.duration) return true;
     return in_.force && resistance(sim) >= *in_.force;
   }
@@ -85,6 +90,8 @@ class Move : public Stage {
     double left = 0;
     if (in_.duration) left = start_ + *in_.duration - sim.state.time;
     if (in_.distance) left = std::max(left, (*in_.distance - distance(sim)) / in_.velocity.norm());
+    if (in_.displacement)
+      left = std::max(left, (*in_.displacement - displacement(sim)) / in_.velocity.norm());
     return left;
   }
   void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, probed_); }
@@ -92,6 +99,9 @@ class Move : public Stage {
  private:
   double distance(const Simulation& sim) const {
     return direction_.dot(sim.state.walls[wall_].pose.position - from_);
+  }
+  double displacement(const Simulation& sim) const {
+    return direction_.dot(sim.state.walls[wall_].pose.position - sim.wall_reference[wall_].position);
   }
   /// Force of the stones against the motion [N].
   double resistance(const Simulation& sim) const { return -sim.state.walls[wall_].force.dot(direction_); }

@@ -17,5 +17,6 @@ Kind<StageInput> replace_stage();
 Kind<StageInput> adjust_stage();
 Kind<StageInput> remove_stage();
 Kind<StageInput> release_stage();
+Kind<StageInput> repeat_stage();
 
 }  // namespace trackbed
