@@ -2,13 +2,17 @@
 #include "io/describe.h"
 
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "command_line.h"
 #include "commands.h"
 #include "dem/laws/table.h"
 #include "lab/case.h"
 #include "lab/measure.h"
+#include "lab/study/judge.h"
 #include "lab/study/study.h"
 #include "lab/track/track_case.h"
 
@@ -49,6 +53,12 @@ std::string measures_as_markdown() {
   return text;
 }
 
+template <class Input>
+Description describe_file(const char* name, const char* meaning) {
+  const auto defaults = std::make_unique<Input>();
+  return describe_with(name, meaning, [&](Fields& f) { declare(f, *defaults); });
+}
+
 }  // namespace
 
 int describe_command(int argc, char** argv) {
@@ -60,35 +70,30 @@ int describe_command(int argc, char** argv) {
   app.add_flag("--markdown", markdown, "everything, as docs/input.md");
   if (const auto code = parse(app, argc, argv)) return *code;
 
-  const auto defaults = std::make_unique<CaseInput>();
-  const Description description = describe_with("case", "A case is one experiment: one TOML file.",
-                                                [&](Fields& f) { declare(f, *defaults); });
-  StudyInput study_defaults;
-  const Description study =
-      describe_with("study", "A study runs a case under many conditions: one TOML file.",
-                    [&](Fields& f) { declare(f, study_defaults); });
-  TrackCaseInput track_defaults;
-  const Description track = describe_with(
-      "track", "A track case is a train on a railway track: one TOML file with a table [track].",
-      [&](Fields& f) { declare(f, track_defaults); });
-  if (markdown)
-    fmt::print("{}{}\n{}\n{}", to_markdown(description), measures_as_markdown(), to_markdown(track),
-               to_markdown(study));
-  else if (name.empty())
-    fmt::print(
-        "{}\nalso: trackbed describe measures, trackbed describe laws, trackbed describe study, trackbed "
-        "describe track\n",
-        to_text(description));
-  else if (name == "measures")
+  const Description experiment = describe_file<CaseInput>("case", "A case is one experiment: one TOML file.");
+  const std::vector<Description> others{
+      describe_file<TrackCaseInput>(
+          "track", "A track case is a train on a railway track: one TOML file with a table [track]."),
+      describe_file<StudyInput>("study", "A study runs a case under many conditions: one TOML file."),
+      describe_file<JudgeInput>("judge",
+                                "A rule by which `trackbed judge` accepts or refuses runs: one TOML file.")};
+  const auto other = std::ranges::find(others, name, [](const Description& d) { return d.top.name; });
+  if (markdown) {
+    fmt::print("{}{}", to_markdown(experiment), measures_as_markdown());
+    for (const Description& d : others) fmt::print("\n{}", to_markdown(d));
+  } else if (name.empty()) {
+    fmt::print("{}\nalso: trackbed describe measures, trackbed describe laws", to_text(experiment));
+    for (const Description& d : others) fmt::print(", trackbed describe {}", d.top.name);
+    fmt::print("\n");
+  } else if (other != others.end()) {
+    fmt::print("{}", to_text(*other));
+  } else if (name == "measures") {
     fmt::print("{}", measures_as_text());
-  else if (name == "track")
-    fmt::print("{}", to_text(track));
-  else if (name == "study")
-    fmt::print("{}", to_text(study));
-  else if (name == "laws")
+  } else if (name == "laws") {
     fmt::print("{}", laws_as_text());
-  else
-    fmt::print("{}", to_text(description.find(name)));
+  } else {
+    fmt::print("{}", to_text(experiment.find(name)));
+  }
   return 0;
 }
 

@@ -94,27 +94,8 @@ std::vector<std::string> measures_of(const StudyInput& study, const std::vector<
 
 std::string unit_of(const std::string& measure, const std::vector<Outcome>& outcomes) {
   for (const Outcome& outcome : outcomes)
-    if (const Json* found = find_measure(outcome.summary, measure))
-      return (*found)["unit"].get<std::string>();
+    if (const std::string unit = unit_in(outcome.summary, measure); unit != "-") return unit;
   return "-";
-}
-
-/// Rows of fields as a CSV file, written as a whole.
-class Rows {
- public:
-  void add(const std::vector<std::string>& fields) {
-    for (std::size_t k = 0; k < fields.size(); ++k) text_ += (k > 0 ? "," : "") + csv_field(fields[k]);
-    text_ += '\n';
-  }
-  void write(const fs::path& path) const { write_file(path, text_); }
-
- private:
-  std::string text_;
-};
-
-/// Nothing for what is not known: a spreadsheet leaves such cells out.
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
 }  // namespace
@@ -143,11 +124,16 @@ std::optional<double> measure_in(const Json& summary, const std::string& name) {
   return (*found)["value"].get<double>();
 }
 
+std::string unit_in(const Json& summary, const std::string& name) {
+  const Json* found = find_measure(summary, name);
+  return found ? (*found)["unit"].get<std::string>() : "-";
+}
+
 void write_members(const StudyInput& study, const std::vector<Condition>& conditions,
                    const std::vector<Member>& members, const std::vector<Outcome>& outcomes,
                    const fs::path& path) {
   const std::vector<std::string> keys = changed_keys(conditions), measures = measures_of(study, outcomes);
-  Rows rows;
+  CsvRows rows;
   std::vector<std::string> header{"member", "condition"};
   header.insert(header.end(), keys.begin(), keys.end());
   header.insert(header.end(), {"seed", "status", "cause"});
@@ -164,8 +150,8 @@ void write_members(const StudyInput& study, const std::vector<Condition>& condit
     row.insert(row.end(), {std::to_string(members[m].seed), text_of(outcome.status),
                            outcome.status == MemberStatus::failed ? outcome.cause : ""});
     for (const std::string& name : measures)
-      row.push_back(number(measure_in(outcome.summary, name).value_or(NAN)));
-    row.push_back(done ? number(outcome.summary["wall_s"].get<double>()) : "");
+      row.push_back(csv_number(measure_in(outcome.summary, name).value_or(NAN)));
+    row.push_back(done ? csv_number(outcome.summary["wall_s"].get<double>()) : "");
     row.push_back(done ? outcome.summary["state_hash"].get<std::string>() : "");
     rows.add(row);
   }
@@ -185,7 +171,7 @@ void write_table(const StudyInput& study, const std::vector<Condition>& conditio
                  const std::vector<Member>& members, const std::vector<Outcome>& outcomes,
                  const fs::path& path) {
   const std::vector<std::string> keys = changed_keys(conditions), measures = measures_of(study, outcomes);
-  Rows rows;
+  CsvRows rows;
   std::vector<std::string> header{"condition"};
   header.insert(header.end(), keys.begin(), keys.end());
   header.insert(header.end(),
@@ -196,8 +182,8 @@ void write_table(const StudyInput& study, const std::vector<Condition>& conditio
       const Estimate e = estimate_of(name, c, members, outcomes);
       std::vector<std::string> row{conditions[c].name};
       for (const std::string& key : keys) row.push_back(input_at(conditions[c], key));
-      row.insert(row.end(), {name, unit_of(name, outcomes), std::to_string(e.n), number(e.mean),
-                             number(e.deviation), number(e.low()), number(e.high())});
+      row.insert(row.end(), {name, unit_of(name, outcomes), std::to_string(e.n), csv_number(e.mean),
+                             csv_number(e.deviation), csv_number(e.low()), csv_number(e.high())});
       rows.add(row);
     }
   rows.write(path);
