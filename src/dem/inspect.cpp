@@ -136,6 +136,16 @@ double unbalanced_ratio(const Model& model, const State& state) {
     unbalanced += (c.force[i] + weight).norm();
     all += weight.norm();
   }
+  for (Index w = 0; w < model.walls.size(); ++w) {
+    const std::optional<BodyProperties>& body = model.walls[w].body;
+    const WallState& wall = state.walls[w];
+    if (!body || !wall.present || wall.held) continue;
+    Vec3 weight = body->mass * model.gravity, sum = wall.force + weight + wall.applied_force;
+    for (int a = 0; a < 3; ++a)
+      if (!body->free_shift[static_cast<Index>(a)]) weight[a] = sum[a] = 0;
+    unbalanced += sum.norm();
+    all += weight.norm();
+  }
   // Every contact between stones acts on two of them.
   visit_touching(model, state,
                  [&](const Touching& t) { all += (t.clump_2 >= 0 ? 2.0 : 1.0) * t.force().norm(); });

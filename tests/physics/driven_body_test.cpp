@@ -85,5 +85,21 @@ TEST(driven_body, is_free_along_the_other_axes) {
   EXPECT_NEAR(energy_of(sim.model, sim.state).total(), energy, 1e-4);
 }
 
+// A bed is not at rest while a body falls onto it.
+TEST(driven_body, that_falls_is_not_at_rest) {
+  Setting a;
+  a.gravity = {0, 0, -9.81};
+  a.damping = 0.7;
+  Simulation sim = scenes::make_scene(a);
+  scenes::add_plane(sim, Vec3::Zero(), Vec3::UnitZ());
+  const int ball = scenes::add_ball(sim, {5, 5, 0.02});
+  const std::size_t block = add_block(sim, {0, 0, 1});
+  scenes::run_until(sim, 0.05);
+  const double ball_weight = 9.81 * sim.state.clumps.mass[static_cast<std::size_t>(ball)], weight = 9.81 * 5;
+  EXPECT_NEAR(unbalanced_ratio(sim.model, sim.state), weight / (weight + 2 * ball_weight), 1e-3);
+  sim.state.walls[block].held = true;
+  EXPECT_LT(unbalanced_ratio(sim.model, sim.state), 1e-3);
+}
+
 }  // namespace
 }  // namespace trackbed
