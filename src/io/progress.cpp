@@ -36,6 +36,7 @@ std::string progress_line(const ProgressState& state, double steps_per_second, d
 }
 
 Progress::Style Progress::style_of(std::FILE* out) {
+  if (!out) return Style::quiet;
   return ::isatty(::fileno(out)) ? Style::terminal : Style::lines;
 }
 

@@ -24,8 +24,10 @@ class Progress {
   enum class Style { terminal, lines, quiet };
   using Clock = std::chrono::steady_clock;
 
-  /// terminal or lines, as `out` is one or the other.
+  /// terminal or lines, as `out` is one or the other; quiet where it is nothing.
   static Style style_of(std::FILE* out);
+
+  explicit Progress(std::FILE* out) : Progress(out, style_of(out)) {}
 
   /// `out` must live as long; not used when quiet.
   Progress(std::FILE* out, Style style, Clock::time_point start = Clock::now());

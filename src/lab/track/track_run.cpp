@@ -1,9 +1,9 @@
 #include "lab/track/track_run.h"
 
-#include <chrono>
 #include <cmath>
 
 #include "base/hash.h"
+#include "base/stopwatch.h"
 #include "dem/threads.h"
 #include "io/echo.h"
 #include "io/files.h"
@@ -12,12 +12,6 @@
 
 namespace trackbed {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// Where the first wheel is at a time, from where it started [m]: it speeds up smoothly.
 double travelled(const TrainInput& train, double time) {
@@ -35,17 +29,18 @@ double time_of(const TrainInput& train, double distance) {
   return high;
 }
 
-StageSummary rest(fem::TrackModel& track, const TrackCaseInput& in, Clock::time_point start) {
+StageSummary rest(fem::TrackModel& track, const TrackCaseInput& in) {
+  const Stopwatch watch;
   track.find_rest(journey_of(in).start + approach_start(in.track));
   StageSummary stage;
   stage.name = stage.kind = "rest";
-  stage.wall = seconds_since(start);
+  stage.wall = watch.seconds();
   return stage;
 }
 
 StageSummary passage(fem::TrackModel& track, const TrackCaseInput& in, TrackRecorder& recorder,
                      Progress& progress) {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   const Journey journey = journey_of(in);
   const double duration = time_of(in.train, journey.end - journey.start), dt = in.numerics.time_step;
   const auto steps = static_cast<std::int64_t>(std::floor(duration / dt));
@@ -75,7 +70,7 @@ StageSummary passage(fem::TrackModel& track, const TrackCaseInput& in, TrackReco
       {"newton_steps", newton / static_cast<double>(std::max<std::int64_t>(steps, 1)), Dimension::none},
       {"conjugate_steps", conjugate / static_cast<double>(std::max<std::int64_t>(steps, 1)),
        Dimension::none}};
-  stage.wall = seconds_since(start);
+  stage.wall = watch.seconds();
   return stage;
 }
 
@@ -83,7 +78,7 @@ StageSummary passage(fem::TrackModel& track, const TrackCaseInput& in, TrackReco
 
 Summary run_track(const Document& document, const TrackCaseInput& in, const RunOptions& options,
                   const std::filesystem::path& keep) {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch watch;
   check_track(document, in);
   Summary summary;
   summary.title = in.title;
@@ -91,11 +86,10 @@ Summary run_track(const Document& document, const TrackCaseInput& in, const RunO
   summary.input = echo(in);
   make_folder(options.out);
   fem::TrackModel track = make_track(in, keep);
-  const double ground = seconds_since(start);
+  const double ground = watch.seconds();
   TrackRecorder recorder(track, in, options.out);
-  const bool silent = options.quiet || !options.progress;
-  Progress progress(options.progress, silent ? Progress::Style::quiet : Progress::style_of(options.progress));
-  summary.stages.push_back(rest(track, in, Clock::now()));
+  Progress progress(options.quiet ? nullptr : options.progress);
+  summary.stages.push_back(rest(track, in));
   summary.stages.back().results = {{"ground_wall", ground, Dimension::time}};
   recorder.at_rest(track);
   summary.stages.push_back(passage(track, in, recorder, progress));
@@ -104,7 +98,7 @@ Summary run_track(const Document& document, const TrackCaseInput& in, const RunO
   Hash hash;
   for (const double u : track.system().displacements()) hash.add(u);
   summary.state_hash = hash.value();
-  summary.wall = seconds_since(start);
+  summary.wall = watch.seconds();
   write_summary(summary, options.out / "summary.json");
   return summary;
 }
