@@ -20,6 +20,10 @@ struct Column {
   std::string name;
   Dimension dimension = Dimension::none;
   bool is_text = false;  // holds words: headed by its name alone
+  template <class A>
+  void archive(A& a) {
+    a(name, dimension, is_text);
+  }
 };
 
 /// A number or a word of a table.

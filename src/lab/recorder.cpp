@@ -144,6 +144,11 @@ fs::path Recorder::of_stage(const Simulation& sim, const char* file) const {
   return folder_ / "stages" / fmt::format("{}-{}", file_name_of(sim.stage), file);
 }
 
+void Recorder::write_table(const Simulation& sim, const ResultTable& table) const {
+  CsvWriter csv(of_stage(sim, (table.name + ".csv").c_str()), table.columns);
+  for (const std::vector<double>& row : table.rows) csv.add_row(row);
+}
+
 fs::path Recorder::write_failure(const Simulation& sim) const {
   const fs::path folder = folder_ / "failure";
   Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim, places_);

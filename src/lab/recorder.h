@@ -5,7 +5,7 @@
 //   stones.csv              every stone, likewise
 //   bed.png, forces.png, displacements.png
 //                           the bed, the force chains in it, and how far stones have moved, likewise
-//   stages/STAGE-*          the same at the end of each stage, or of those of record.stages
+//   stages/STAGE-*          the same at the end of each stage, or of those of record.stages; tables of stages
 //   paraview/*.pvd          a frame at the end of each of these stages, and every record.paraview_every
 //   failure/                tables and a ParaView frame of the last state of a run that failed
 #pragma once
@@ -49,6 +49,9 @@ class Recorder {
   void after_step(const Simulation& sim);
   /// After the last step of a stage.
   void close_stage(const Simulation& sim);
+
+  /// Writes the table that the stage which runs has left.
+  void write_table(const Simulation& sim, const ResultTable& table) const;
 
   /// Writes the last state of a run that failed into the folder `failure`, which is returned.
   std::filesystem::path write_failure(const Simulation& sim) const;

@@ -171,6 +171,7 @@ class Course {
     recorder_.close_stage(sim_);
     found.measures = measured(sim_);
     found.results = stages_[stage_].stage->close(sim_);
+    if (const ResultTable* table = stages_[stage_].stage->table()) recorder_.write_table(sim_, *table);
     sim_.restore(start_.before);
     check_count(sim_, start_.stones, found.results);
     found.wall = stage_wall_ + seconds_since(stage_clock_);

@@ -10,6 +10,7 @@
 
 #include "base/archive.h"
 #include "base/units.h"
+#include "io/csv.h"
 #include "io/schema.h"
 #include "lab/simulation.h"
 
@@ -23,6 +24,17 @@ struct Result {
   template <class A>
   void archive(A& a) {
     a(name, value, dimension);
+  }
+};
+
+/// Rows that a stage leaves besides its results, in stages/STAGE-NAME.csv.
+struct ResultTable {
+  std::string name;
+  std::vector<Column> columns;            // of numbers
+  std::vector<std::vector<double>> rows;  // SI; as many values as columns
+  template <class A>
+  void archive(A& a) {
+    a(name, columns, rows);
   }
 };
 
@@ -57,6 +69,8 @@ class Stage {
   virtual bool finished(const Simulation& sim) = 0;
   /// Called once after the last step; returns what it found. The conditions are brought back after it.
   virtual std::vector<Result> close(Simulation&) { return {}; }
+  /// The table it leaves, if any; looked at after close. To be archived with the rest.
+  virtual const ResultTable* table() const { return nullptr; }
   /// Simulated time this stage will take from now on, for the progress line [s]; 0: not known.
   virtual double remaining(const Simulation&) const { return 0; }
   /// All that changes between open and close, for a run that is taken up again.

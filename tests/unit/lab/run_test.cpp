@@ -69,6 +69,29 @@ class Steps : public Stage {
   double stones_;
 };
 
+/// Keeps a row of time and force a step; the last after its last step.
+class Tells : public Steps {
+ public:
+  explicit Tells(int steps) : Steps(steps) {}
+  void control(Simulation& sim) override {
+    Steps::control(sim);
+    add(sim);
+  }
+  std::vector<Result> close(Simulation& sim) override {
+    add(sim);
+    return {};
+  }
+  const ResultTable* table() const override { return &table_; }
+  void archive(Archive& a) override {
+    Steps::archive(a);
+    a(table_);
+  }
+
+ private:
+  void add(const Simulation& sim) { table_.rows.push_back({sim.state.time, 2.5}); }
+  ResultTable table_{"course", {{"time", Dimension::time}, {"force", Dimension::force}}, {}};
+};
+
 /// Makes the ball's speed a thing that is not a number.
 class Breaks : public Steps {
  public:
@@ -126,6 +149,27 @@ TEST_F(Run, OnlyTheStagesAskedForLeaveTablesAndPictures) {
     EXPECT_TRUE(fs::exists(out_ / "stages" / fmt::format("rest-{}", file))) << file;
     EXPECT_TRUE(fs::exists(out_ / file)) << file;
   }
+}
+
+TEST_F(Run, TheTableOfAStageIsWrittenWithTheRowOfItsEnd) {
+  record_.stages = {"another"};  // a table is a result: written whatever else is
+  run(list({"tell all", "hold", std::make_unique<Tells>(2)}));
+  EXPECT_EQ(lines("stages/tell_all-course.csv"),
+            (std::vector<std::string>{"time [s],force [N]", "0,2.5", "1e-05,2.5", "2e-05,2.5"}));
+}
+
+TEST(ResultTables, ComeBackFromAnArchive) {
+  ResultTable table{"levels", {{"force", Dimension::force}, {"share"}}, {{1, 2}, {3, 4}}};
+  Archive writing;
+  writing(table);
+  Archive reading(writing.bytes());
+  ResultTable back;
+  reading(back);
+  EXPECT_EQ(back.name, "levels");
+  ASSERT_EQ(back.columns.size(), 2u);
+  EXPECT_EQ(back.columns[0].name, "force");
+  EXPECT_EQ(back.columns[0].dimension, Dimension::force);
+  EXPECT_EQ(back.rows, table.rows);
 }
 
 TEST_F(Run, SummaryHoldsStagesMeasuresAndHash) {
