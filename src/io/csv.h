@@ -61,4 +61,28 @@ class CsvWriter {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
+/// A table read whole, its columns by name; what this or another program has written.
+class CsvTable {
+ public:
+  /// Throws InputError when the file cannot be read, or a line has other fields than the header.
+  explicit CsvTable(const std::filesystem::path& path);
+
+  std::size_t rows() const { return rows_.size(); }
+  bool has(std::string_view column) const { return find(column) >= 0; }
+  /// A column of numbers, in SI by the unit that stands in its heading, "force [kN]"; without one they are
+  /// in SI. Throws InputError when there is no such column, the unit is of another dimension, or a field is
+  /// no number.
+  std::vector<double> numbers(std::string_view column, Dimension dimension) const;
+  /// A column of words. Throws InputError when there is no such column.
+  std::vector<std::string> texts(std::string_view column) const;
+
+ private:
+  int find(std::string_view column) const;  // -1: there is none
+  std::size_t require(std::string_view column) const;
+
+  std::filesystem::path path_;
+  std::vector<std::string> names_, units_;  // of the columns; a unit may be empty
+  std::vector<std::vector<std::string>> rows_;
+};
+
 }  // namespace trackbed
