@@ -19,6 +19,7 @@ namespace {
 std::vector<Measure> all_measures() {
   Simulation sim;
   sim.container.extend(Vec3::Zero()).extend(Vec3::Ones());
+  sim.force_limits = RecordInput{}.force_bins;
   Wall wall{make_plane_wall("WALL", 1.0), 0, {}}, body = wall;
   body.shape.name = "BODY";
   body.body.emplace();
