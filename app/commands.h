@@ -10,5 +10,6 @@ int describe_command(int argc, char** argv);
 int bench_command(int argc, char** argv);
 int stone_command(int argc, char** argv);
 int study_command(int argc, char** argv);
+int couple_command(int argc, char** argv);
 
 }  // namespace trackbed

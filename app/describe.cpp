@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "dem/laws/table.h"
 #include "lab/case.h"
+#include "lab/coupling.h"
 #include "lab/measure.h"
 #include "lab/study/study.h"
 #include "lab/track/track_case.h"
@@ -72,18 +73,24 @@ int describe_command(int argc, char** argv) {
   const Description track = describe_with(
       "track", "A track case is a train on a railway track: one TOML file with a table [track].",
       [&](Fields& f) { declare(f, track_defaults); });
+  CouplingInput coupling_defaults;
+  const Description coupling = describe_with(
+      "coupling", "A coupling joins a track case and a bed: one TOML file for `trackbed couple`.",
+      [&](Fields& f) { declare(f, coupling_defaults); });
   if (markdown)
-    fmt::print("{}{}\n{}\n{}", to_markdown(description), measures_as_markdown(), to_markdown(track),
-               to_markdown(study));
+    fmt::print("{}{}\n{}\n{}\n{}", to_markdown(description), measures_as_markdown(), to_markdown(track),
+               to_markdown(study), to_markdown(coupling));
   else if (name.empty())
     fmt::print(
         "{}\nalso: trackbed describe measures, trackbed describe laws, trackbed describe study, trackbed "
-        "describe track\n",
+        "describe track, trackbed describe coupling\n",
         to_text(description));
   else if (name == "measures")
     fmt::print("{}", measures_as_text());
   else if (name == "track")
     fmt::print("{}", to_text(track));
+  else if (name == "coupling")
+    fmt::print("{}", to_text(coupling));
   else if (name == "study")
     fmt::print("{}", to_text(study));
   else if (name == "laws")

@@ -24,6 +24,7 @@ constexpr std::array commands = {
     Command{"run", trackbed::run_command, "run a case and write its results"},
     Command{"apss", trackbed::apss_command, "run a case with clumps where they matter, balls elsewhere"},
     Command{"study", trackbed::study_command, "run a case under many conditions and seeds"},
+    Command{"couple", trackbed::couple_command, "couple a track with the bed under its sleepers"},
     Command{"check", trackbed::check_command, "check a case and say what it would do"},
     Command{"describe", trackbed::describe_command, "say what may stand in a case"},
     Command{"bench", trackbed::bench_command, "time this machine on a bed"},

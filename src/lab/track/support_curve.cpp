@@ -14,7 +14,8 @@ namespace {
 using Index = std::size_t;
 
 constexpr double nearly = 0.02;  // of the largest force: a cycle that comes so near has reached it
-constexpr double bottom = 0.05;  // of the range of forces: a rise begins below
+constexpr double bottom = 0.05;  // of the range of forces: between two rises it falls below
+constexpr double touch = 0.002;  // of the largest force: with less a sleeper hardly touches
 
 /// First and last row of the last rise to the largest force.
 struct Rise {
@@ -25,12 +26,31 @@ Rise last_rise(const PressHistory& h) {
   const double most = std::ranges::max(h.force), least = std::ranges::min(h.force);
   Index to = h.force.size() - 1;
   while (h.force[to] < (1 - nearly) * most) --to;
-  Index from = to;  // the last row before it under little force, or the least of all
+  Index from = to;  // the last row before it under little force
   while (from > 0 && h.force[from] > least + bottom * (most - least)) --from;
+  Index first = from;  // of the rows under little force
+  while (first > 0 && h.force[first - 1] <= least + bottom * (most - least)) --first;
+  const auto lowest = std::min_element(h.force.begin() + static_cast<std::ptrdiff_t>(first),
+                                       h.force.begin() + static_cast<std::ptrdiff_t>(from) + 1);
+  while (h.force[from] > std::max(*lowest, 0.0) + touch * most && from > first) --from;
   to = static_cast<Index>(std::max_element(h.force.begin() + static_cast<std::ptrdiff_t>(from),
                                            h.force.begin() + static_cast<std::ptrdiff_t>(to) + 1) -
                           h.force.begin());
   return {from, to};
+}
+
+/// The last row before the sleeper touches the bed for the first time; the first row if it does so already.
+Index first_touch(const PressHistory& h) {
+  const double most = std::ranges::max(h.force);
+  Index k = 0;
+  while (h.force[k] <= touch * most) ++k;
+  return k > 0 ? k - 1 : 0;
+}
+
+/// Where there, led back along a slope, the force is zero.
+double first_zero(const PressHistory& h, double slope) {
+  const Index k = first_touch(h);
+  return h.sinking[k] - std::max(0.0, h.force[k]) / slope;
 }
 
 /// Secant from the end of a rise to half of its force; 0 when it is not unloaded so far.
@@ -89,8 +109,7 @@ SupportCurve support_curve(const PressHistory& h, int points) {
     curve.force.insert(curve.force.begin(), 0.0);
   }
   const double zero = curve.sinking.front();
-  curve.settlement = zero - (h.sinking.front() - std::max(0.0, h.force.front()) / curve.unloading);
-  if (rise.from == 0) curve.settlement = 0;
+  curve.settlement = rise.from > first_touch(h) ? zero - first_zero(h, curve.unloading) : 0;
   for (double& sinking : curve.sinking) sinking -= zero;
   return curve;
 }

@@ -24,11 +24,12 @@ struct SupportCurve {
   double secant() const { return force.back() / sinking.back(); }
 };
 
-/// The curve of the last rise to the largest force, by its crossings of `points` equal steps of force. The
-/// slope of unloading is that from the largest force to half of it after the rise, or, without unloading or
-/// where that is softer, the steepest slope of the curve. A rise that begins under a force is led back to
-/// none with this slope, and so is the start of the history, from which the settlement counts. Throws
-/// InputError with a sentence when the force never grows above zero or the sleeper does not sink.
+/// The curve of the last rise to the largest force, from the last touch without force, by its crossings of
+/// `points` equal steps of force. The slope of unloading is that from the largest force to half of it after
+/// the rise, or, without unloading or where that is softer, the steepest slope of the curve. A rise that
+/// begins under a force is led back to none with this slope, and so is the first touch, from which the
+/// settlement counts. Throws InputError with a sentence when the force never grows above zero or the sleeper
+/// does not sink.
 SupportCurve support_curve(const PressHistory& history, int points = 20);
 
 /// The same from a CSV with columns sinking and force. Throws InputError that names the file.
