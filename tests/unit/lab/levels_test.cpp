@@ -138,7 +138,7 @@ materials.ballast = { kn = "1e6 N/m", ks = "1e6 N/m" }
 [[stages]]
 kind = "move"
 wall = "lid"
-velocity = ["0 m/s", "0 m/s", "-10 mm/s"]
+velocity = ["0 m/s", "0 m/s", "-1 mm/s"]
 )" + keys,
                                                   "press.toml");
     CaseInput in;
