@@ -11,5 +11,6 @@ int bench_command(int argc, char** argv);
 int stone_command(int argc, char** argv);
 int study_command(int argc, char** argv);
 int judge_command(int argc, char** argv);
+int couple_command(int argc, char** argv);
 
 }  // namespace trackbed

@@ -11,6 +11,7 @@
 #include "commands.h"
 #include "dem/laws/table.h"
 #include "lab/case.h"
+#include "lab/coupling.h"
 #include "lab/measure.h"
 #include "lab/study/judge.h"
 #include "lab/study/study.h"
@@ -23,6 +24,7 @@ namespace {
 std::vector<Measure> all_measures() {
   Simulation sim;
   sim.container.extend(Vec3::Zero()).extend(Vec3::Ones());
+  sim.force_limits = RecordInput{}.force_bins;
   Wall wall{make_plane_wall("WALL", 1.0), 0, {}}, body = wall;
   body.shape.name = "BODY";
   body.body.emplace();
@@ -76,7 +78,9 @@ int describe_command(int argc, char** argv) {
           "track", "A track case is a train on a railway track: one TOML file with a table [track]."),
       describe_file<StudyInput>("study", "A study runs a case under many conditions: one TOML file."),
       describe_file<JudgeInput>("judge",
-                                "A rule by which `trackbed judge` accepts or refuses runs: one TOML file.")};
+                                "A rule by which `trackbed judge` accepts or refuses runs: one TOML file."),
+      describe_file<CouplingInput>(
+          "coupling", "A coupling joins a track case and a bed: one TOML file for `trackbed couple`.")};
   const auto other = std::ranges::find(others, name, [](const Description& d) { return d.top.name; });
   if (markdown) {
     fmt::print("{}{}", to_markdown(experiment), measures_as_markdown());

@@ -120,7 +120,7 @@ void TrackModel::add_ground(Zone& zone, int number) {
       throw std::invalid_argument("the ground of a zone has other ports than its sleepers");
     ground = system_.add(std::move(zone.ground));
   }
-  const LinkLaw contact = shared(zone.contact, input_.sleeper.patches);
+  const LinkLaw on_ground = shared(zone.contact, input_.sleeper.patches);
   for (int s = 0; s < zone.sleepers; ++s, next_x_ += input_.spacing) {
     const Index sleeper = sleepers + s * ports;
     const int group = static_cast<int>(supports_.size());
@@ -133,9 +133,12 @@ void TrackModel::add_ground(Zone& zone, int number) {
     }
     support.first_contact = system_.links();
     const double gap = zone.gaps.empty() ? 0 : zone.gaps.at(at(s));
+    const auto own = zone.own_supports.find(s);
+    const bool has_own = own != zone.own_supports.end();
+    const LinkLaw contact = has_own ? shared(own->second, input_.sleeper.patches) : on_ground;
     for (Index p = 0; p < patches; ++p) {
       std::vector<LinkEnd> ends{{sleeper + p, -1.0}};
-      if (ground >= 0) ends.push_back({ground + s * patches + p, 1.0});
+      if (ground >= 0 && !has_own) ends.push_back({ground + s * patches + p, 1.0});
       system_.add(Link{contact, std::move(ends), gap, group});
     }
     supports_.push_back(support);

@@ -6,6 +6,7 @@
 // of two halves joined by their sleepers can be built to check that a half is enough.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -46,7 +47,8 @@ struct Zone {
   std::unique_ptr<Part>
       ground;       // ports: mean sinking of each patch, sleeper after sleeper; nothing: it does not give
   LinkLaw contact;  // between a half of a sleeper and ground
-  std::vector<double> gaps;  // under each sleeper before it hangs or sinks [m]; empty: none
+  std::vector<double> gaps;             // under each sleeper before it hangs or sinks [m]; empty: none
+  std::map<int, LinkLaw> own_supports;  // of sleepers that lie on these in place of ground, by their places
 };
 
 struct TrackInput {

@@ -183,6 +183,7 @@ Simulation make_simulation(const Document& document, const CaseInput& in) {
                document);
   build_set(document, "", in.stones, sim);
   for (const auto& [name, set] : in.stones.sets) build_set(document, name, set, sim);
+  sim.force_limits = in.record.force_bins;
   for (const auto& [name, region] : in.regions) build_region(document, name, *region.input, sim);
 
   Model& m = sim.model;

@@ -118,8 +118,9 @@ void declare(Fields& f, RecordInput& in) {
   f.quantity("every", in.every, Dimension::time, {.above = 0},
              "simulated time between two rows of series.csv");
   f.texts("measures", in.measures, "further columns of series.csv");
-  f.quantities("force_bins", in.force_bins, Dimension::force, {.above = 0},
-               "limits of the histogram of contact forces");
+  f.quantities(
+      "force_bins", in.force_bins, Dimension::force, {.above = 0},
+      "limits of the histogram of contact forces, and of the ranges of the measures contacts_FROM_TO_N");
   f.texts("stages", in.stages,
           "stages at whose ends tables, pictures and a ParaView frame are written; by default all");
   f.flag("tables", in.tables, "write contacts.csv and stones.csv at the end of these stages");

@@ -39,6 +39,7 @@ struct Simulation {
   std::string stage;   // name of the one that runs
   std::vector<StoneSet> stone_sets;       // first that of [stones], without a name
   std::map<std::string, Region> regions;  // by the names of the case
+  std::vector<double> force_limits;       // of the ranges of force in which contacts are counted [N]
 
   /// Index of the wall or body of that name; -1 when there is none.
   int find_wall(std::string_view name) const;

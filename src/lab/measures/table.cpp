@@ -1,4 +1,6 @@
 // The table of measures: one row each.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -51,6 +53,25 @@ std::vector<Measure> contact_measures() {
   };
 }
 
+/// Contacts in each range between the limits of the case.
+std::vector<Measure> range_measures(Sim sim) {
+  std::vector<Measure> all;
+  const std::vector<double>& limits = sim.force_limits;
+  for (std::size_t k = 0; k < limits.size() + (limits.empty() ? 0 : 1); ++k) {
+    std::string name = "contacts_below", range = "below";
+    if (k == limits.size()) name = "contacts_above", range = "of or above";
+    if (k > 0 && k < limits.size()) {
+      name = fmt::format("contacts_{:g}", limits[k - 1]);
+      range = fmt::format("from {:g} N to below", limits[k - 1]);
+    }
+    const double limit = limits[std::min(k, limits.size() - 1)];
+    all.push_back({fmt::format("{}_{:g}_N", name, limit), Dimension::none,
+                   fmt::format("contacts whose elastic force is {} {:g} N (record.force_bins)", range, limit),
+                   [k](Sim s) { return force_histogram(s, s.force_limits)[k]; }});
+  }
+  return all;
+}
+
 Measure energy(std::string name, std::string meaning, double EnergyBalance::*part) {
   return {std::move(name), Dimension::energy, std::move(meaning),
           [part](Sim s) { return energy_of(s.model, s.state).*part; }};
@@ -92,6 +113,7 @@ std::vector<Measure> measures_of(const Simulation& sim) {
   const auto add = [&](std::vector<Measure> more) { std::ranges::move(more, std::back_inserter(all)); };
   add(stone_measures());
   add(contact_measures());
+  add(range_measures(sim));
   if (!sim.container.isEmpty()) add(bed_measures());
   add(energy_measures());
   for (std::size_t w = 0; w < sim.model.walls.size(); ++w) add(wall_measures(sim.model.walls[w], w));

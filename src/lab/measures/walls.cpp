@@ -56,17 +56,40 @@ Face face_of(const Vec3& inwards, const std::vector<Facing>& facings) {
       ->face;
 }
 
+/// Contacts of the stones with one wall or body.
+template <class Visit>
+void visit_wall(const Simulation& sim, std::size_t wall, Visit&& visit) {
+  for (const WallBlock& block : sim.state.wall_blocks)
+    for (const WallPair& pair : block.pairs)
+      if (pair.wall == static_cast<int>(wall)) visit_pair(sim.model, sim.state, block, pair, visit);
+}
+
+/// Number and magnitudes of the elastic contact forces on a wall or body.
+struct WallContacts {
+  int number = 0;
+  double sum = 0, largest = 0;  // [N]
+  double mean() const { return number > 0 ? sum / number : 0; }
+};
+
+WallContacts contacts_of_wall(const Simulation& sim, std::size_t wall) {
+  WallContacts found;
+  visit_wall(sim, wall, [&](const Touching& t) {
+    const double force = t.force().norm();
+    ++found.number;
+    found.sum += force;
+    found.largest = std::max(found.largest, force);
+  });
+  return found;
+}
+
 /// Elastic force of the stones on one part of a body [N].
 Vec3 force_on_face(const Simulation& sim, std::size_t wall, Face face) {
   const std::vector<Facing> facings = facings_of(sim, wall);
   const Quat back = sim.state.walls[wall].pose.orientation.conjugate();
   Vec3 force = Vec3::Zero();
-  for (const WallBlock& block : sim.state.wall_blocks)
-    for (const WallPair& pair : block.pairs)
-      if (pair.wall == static_cast<int>(wall))
-        visit_pair(sim.model, sim.state, block, pair, [&](const Touching& t) {
-          if (face_of(back * t.normal, facings) == face) force += t.force();
-        });
+  visit_wall(sim, wall, [&](const Touching& t) {
+    if (face_of(back * t.normal, facings) == face) force += t.force();
+  });
   return force;
 }
 
@@ -87,6 +110,14 @@ std::vector<Measure> wall_measures(const Wall& wall, std::size_t index) {
              });
   add_vector(all, name + ".velocity", Dimension::velocity, "of " + name + ", half a step ago",
              [state](const Simulation& sim) { return state(sim).velocity; });
+  all.push_back({name + ".contacts", Dimension::none, "touches of pebbles with " + name,
+                 [index](const Simulation& sim) { return contacts_of_wall(sim, index).number; }});
+  all.push_back({name + ".contact_force_mean", Dimension::force,
+                 "magnitude of the elastic contact force on " + name + ", mean of its contacts",
+                 [index](const Simulation& sim) { return contacts_of_wall(sim, index).mean(); }});
+  all.push_back({name + ".contact_force_max", Dimension::force,
+                 "magnitude of the largest elastic contact force on " + name,
+                 [index](const Simulation& sim) { return contacts_of_wall(sim, index).largest; }});
   if (wall.body)
     for (const auto& [face, part, where] : {std::tuple(Face::base, "base", "underside and top"),
                                             {Face::slopes, "slopes", "the inclined faces"},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lab/checks.h"
+#include "lab/stages/levels.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -19,6 +20,8 @@ struct MoveInput : StageInput {
   std::optional<double> duration;      // [s]
   std::optional<double> force;         // [N]
   std::vector<double> probes;          // [m]
+  LevelsInput levels;
+  bool says_when() const { return distance || displacement || duration || force; }
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override;
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
@@ -36,16 +39,18 @@ void declare(Fields& f, MoveInput& in) {
              "stop when the stones push against the motion with this force");
   f.quantities("probes", in.probes, Dimension::length, {.above = 0},
                "distances at which the force against the motion is reported");
+  declare(f, in.levels);
   f.check(std::is_sorted(in.probes.begin(), in.probes.end()), "probes", "the distances do not ascend",
           "sort them");
   f.check(in.velocity.norm() > 0, "velocity", "the velocity is zero",
           "give a velocity, or use the stage hold");
-  f.check(in.distance || in.displacement || in.duration || in.force, "duration",
-          "nothing says when the motion ends", "give distance, displacement, duration or force");
+  f.check(in.says_when() || in.levels.any(), "duration", "nothing says when the motion ends",
+          "give distance, displacement, duration, force or levels");
 }
 
 void MoveInput::check(const Document& document, const CaseInput&, const Simulation& sim) const {
   check_in_plane(document, sim, here + ".velocity", velocity);
+  levels.check(document, sim, here);
   const int number = sim.find_wall(wall);
   const bool is_body = number >= 0 && sim.model.walls[static_cast<std::size_t>(number)].body;
   if (!is_body) return check_wall(document, sim, here + ".wall", wall);
@@ -58,22 +63,25 @@ void MoveInput::check(const Document& document, const CaseInput&, const Simulati
 
 class Move : public Stage {
  public:
-  explicit Move(const MoveInput& in) : in_(in), direction_(in.velocity.normalized()) {}
+  explicit Move(const MoveInput& in) : in_(in), direction_(in.velocity.normalized()), levels_(in.levels) {}
 
   void open(Simulation& sim) override {
     wall_ = static_cast<std::size_t>(sim.find_wall(in_.wall));
     start_ = sim.state.time;
     from_ = sim.state.walls[wall_].pose.position;
+    levels_.open(sim);
   }
   void control(Simulation& sim) override {
     look(sim);
     sim.drive(wall_, in_.velocity);
   }
   bool finished(const Simulation& sim) override {
+    levels_.look(sim, resistance(sim), distance(sim));
     if (in_.distance && distance(sim) >= *in_.distance) return true;
     if (in_.displacement && displacement(sim) >= *in_.displacement) return true;
     if (in_.duration && sim.state.time - start_ >= *in_.duration) return true;
-    return in_.force && resistance(sim) >= *in_.force;
+    if (in_.force && resistance(sim) >= *in_.force) return true;
+    return !in_.says_when() && levels_.all_crossed();
   }
   std::vector<Result> close(Simulation& sim) override {
     look(sim);
@@ -84,8 +92,10 @@ class Move : public Stage {
                                 {"distance_at_peak", peak_at_, Dimension::length}};
     for (std::size_t k = 0; k < probed_.size(); ++k)
       results.push_back({fmt::format("force_at_{:g}_mm", 1e3 * in_.probes[k]), probed_[k], Dimension::force});
+    for (const Result& r : levels_.results()) results.push_back(r);
     return results;
   }
+  const ResultTable* table() const override { return levels_.table(); }
   double remaining(const Simulation& sim) const override {
     double left = 0;
     if (in_.duration) left = start_ + *in_.duration - sim.state.time;
@@ -94,7 +104,7 @@ class Move : public Stage {
       left = std::max(left, (*in_.displacement - displacement(sim)) / in_.velocity.norm());
     return left;
   }
-  void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, probed_); }
+  void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, probed_, levels_); }
 
  private:
   double distance(const Simulation& sim) const {
@@ -122,6 +132,7 @@ class Move : public Stage {
   Vec3 from_ = Vec3::Zero();
   double peak_ = 0, peak_at_ = 0;  // [N], [m]
   std::vector<double> probed_;     // [N]
+  Levels levels_;
 };
 
 std::unique_ptr<Stage> MoveInput::make(const CaseInput&) const {

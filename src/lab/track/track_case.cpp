@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <set>
 #include <stdexcept>
 
 #include "base/error.h"
 #include "fem/soil_parts.h"
+#include "lab/track/support_curve.h"
 
 namespace trackbed {
 namespace {
@@ -79,6 +82,20 @@ std::unique_ptr<fem::Part> make_ground(const TrackCaseInput& in, TrackZone zone,
   return std::make_unique<fem::ExplicitPart>(soil, std::move(reduced), in.track.sleeper.patches);
 }
 
+void add_own_supports(const TrackLayoutInput& t, TrackZone kind, fem::Zone& zone) {
+  const std::vector<int> n = sleepers_of(t);
+  const int first = std::accumulate(n.begin(), n.begin() + static_cast<int>(kind), 0);
+  for (const OwnSupportInput& in : t.supports) {
+    const SupportCurve curve = read_support_curve(in.curve);
+    for (const int number : numbers_of(in)) {
+      const int place = support_of_sleeper(t, number) - first;
+      if (place < 0 || place >= zone.sleepers) continue;
+      zone.own_supports.emplace(place, half_of(curve));
+      zone.gaps[static_cast<std::size_t>(place)] += curve.settlement + in.settlement;
+    }
+  }
+}
+
 /// What lies under the sleepers of a zone, and how they touch it.
 fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const std::filesystem::path& keep) {
   const TrackLayoutInput& t = in.track;
@@ -90,6 +107,7 @@ fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const std::filesys
   }
   if (zone.sleepers == 0) return zone;
   zone.gaps.assign(static_cast<std::size_t>(zone.sleepers), t.settlement);
+  add_own_supports(t, kind, zone);
   zone.contact = fem::OneSidedSpring{t.sleeper.contact};
   const bool is_embankment = kind == TrackZone::approach || kind == TrackZone::departure;
   if (is_embankment && t.support) {
@@ -126,6 +144,20 @@ int sleeper_number(const TrackLayoutInput& track, int support) {
   return support < behind ? 0 : support - behind + 1;
 }
 
+int support_of_sleeper(const TrackLayoutInput& track, int number) {
+  const std::vector<int> n = sleepers_of(track);
+  if (number < 0 && -number <= n[1]) return n[0] + n[1] + number;
+  if (number > 0 && number <= n[3]) return n[0] + n[1] + n[2] + number - 1;
+  return -1;
+}
+
+std::vector<int> numbers_of(const SleeperRange& range) {
+  std::vector<int> numbers;
+  for (int n = range.from; n <= range.to; ++n)
+    if (n != 0) numbers.push_back(n);
+  return numbers;
+}
+
 double approach_start(const TrackLayoutInput& track) {
   return sleepers_of(track)[0] * track.spacing;
 }
@@ -135,6 +167,26 @@ Journey journey_of(const TrackCaseInput& in) {
   const double end = lengths[1] + lengths[2] + lengths[3] + lengths[4];
   return {in.train.start.value_or(train_length(in) + clearance - lengths[0]),
           in.train.end.value_or(end - clearance)};
+}
+
+void check_own_supports(const Document& document, const TrackLayoutInput& t) {
+  std::set<int> known;
+  for (std::size_t k = 0; k < t.supports.size(); ++k) {
+    const std::string here = fmt::format("track.supports.{}", k);
+    for (const int number : numbers_of(t.supports[k])) {
+      if (support_of_sleeper(t, number) < 0)
+        document.fail(here, fmt::format("there is no sleeper {} on an embankment", number),
+                      "sleepers are counted from the bridge: -1, -2 before it, 1, 2 behind it");
+      if (!known.insert(number).second)
+        document.fail(here, fmt::format("sleeper {} has two supports of its own", number),
+                      "let the ranges not overlap");
+    }
+    try {
+      read_support_curve(t.supports[k].curve);
+    } catch (const InputError& error) {
+      document.fail(here + ".curve", error.what(), "give columns sinking [m] and force [N]");
+    }
+  }
 }
 
 void check_track(const Document& document, const TrackCaseInput& in) {
@@ -162,6 +214,7 @@ void check_track(const Document& document, const TrackCaseInput& in) {
   if (journey.end > last)
     document.fail("train.end", "the first wheel would leave the track",
                   fmt::format("end at {} m or earlier", last));
+  check_own_supports(document, in.track);
   const bool has_ground = in.track.ground.model != "springs" && !in.track.support;
   if (!has_ground) return;
   for (const TrackZone zone : {TrackZone::approach, TrackZone::departure}) {

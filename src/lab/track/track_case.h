@@ -59,6 +59,19 @@ struct MeasuredInput {
   double unloading = 0;
 };
 
+/// Sleepers by their numbers, both ends included; 0, the bridge, is none of them.
+struct SleeperRange {
+  int from = 0, to = 0;
+};
+void declare(Fields& f, SleeperRange& in);
+std::vector<int> numbers_of(const SleeperRange& range);
+
+/// Sleepers that lie on a bed of stones, known by its curve, in place of ground.
+struct OwnSupportInput : SleeperRange {
+  std::filesystem::path curve;  // read by support_curve.h
+  double settlement = 0;        // [m]
+};
+
 struct SlabInput {
   double width = 4, depth = 1.6;
   double young = 3.5e10, poisson = 0.2, density = 2500;
@@ -86,6 +99,7 @@ struct TrackLayoutInput {
   GroundInput ground;
   SpringsInput springs;
   std::optional<MeasuredInput> support;
+  std::vector<OwnSupportInput> supports;
   SlabInput slab;
 };
 
@@ -132,6 +146,9 @@ std::vector<int> sleepers_of(const TrackLayoutInput& track);
 
 /// Name of a sleeper: counted from the bridge, negative before it, positive behind; "bridge N" on it.
 int sleeper_number(const TrackLayoutInput& track, int support);
+
+/// Its place along the whole track, or -1 when no embankment has a sleeper of this number.
+int support_of_sleeper(const TrackLayoutInput& track, int number);
 
 /// Where the first wheel starts and where the run ends [m from the start of the approach].
 struct Journey {

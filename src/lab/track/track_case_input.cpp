@@ -118,6 +118,24 @@ void declare(Fields& f, MeasuredInput& in) {
             "unloading", "the curve is steeper than this", "give the steepest slope of the curve or more");
 }
 
+void declare(Fields& f, SleeperRange& in) {
+  f.integer(required("from"), in.from, {},
+            "number of the first of these sleepers, counted from the bridge, negative before it");
+  f.integer(required("to"), in.to, {}, "number of the last");
+  f.check(in.from <= in.to, "to", "the last sleeper comes before the first",
+          "give the smaller number as from");
+}
+
+void declare(Fields& f, OwnSupportInput& in) {
+  declare(f, static_cast<SleeperRange&>(in));
+  f.path(required("curve"), in.curve,
+         "CSV with columns sinking and force of a whole sleeper, as they came one after the other; the last "
+         "rise "
+         "to the largest force counts, and what the sleeper has sunk for good before it is a settlement");
+  f.quantity("settlement", in.settlement, Dimension::length, {},
+             "further settlement under these sleepers, beside that of the curve and of all");
+}
+
 void declare(Fields& f, SlabInput& in) {
   f.quantity("width", in.width, Dimension::length, positive,
              "of the deck's section, a solid rectangle; not published");
@@ -184,6 +202,10 @@ void declare(Fields& f, TrackLayoutInput& in) {
             "under sleepers of lead-in and run-out, and of embankments of model springs");
   f.section("support", in.support,
             "a measured support of each sleeper of the embankments, in place of ground");
+  f.sequence(
+      "supports", in.supports,
+      "sleepers of the embankments that lie on supports of their own in place of ground, such as a bed of "
+      "stones");
   f.section("slab", in.slab, "bridge deck");
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <limits>
 
@@ -41,6 +42,41 @@ TEST_F(Csv, NumbersReadBackToTheSameBits) {
     const double back = std::strtod(text.c_str(), nullptr);
     RC_ASSERT(back == value);
   });
+}
+
+TEST_F(Csv, ATableIsReadByNamesAndUnits) {
+  write_file(path_,
+             "time [ms],\"sleeper, force [kN]\", stage,share [-],plain\r\n1,2.5,\"a "
+             "\"\"b\"\"\",0.5,7\r\n\r\n2,-1e-3,c,nan,8\r\n");
+  const CsvTable table(path_);
+  EXPECT_EQ(table.rows(), 2u);
+  EXPECT_EQ(table.numbers("time", Dimension::time), (std::vector<double>{1e-3, 2e-3}));
+  EXPECT_EQ(table.numbers("sleeper, force", Dimension::force), (std::vector<double>{2500, -1}));
+  EXPECT_EQ(table.texts("stage"), (std::vector<std::string>{"a \"b\"", "c"}));
+  EXPECT_EQ(table.numbers("share", Dimension::none)[0], 0.5);
+  EXPECT_TRUE(std::isnan(table.numbers("share", Dimension::none)[1]));
+  EXPECT_EQ(table.numbers("plain", Dimension::mass), (std::vector<double>{7, 8}));
+  EXPECT_FALSE(table.has("x"));
+}
+
+TEST_F(Csv, WhatIsNoSuchTableIsRefused) {
+  const auto message = [&](const std::string& text, const auto& use) -> std::string {
+    write_file(path_, text);
+    try {
+      use(CsvTable(path_));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "nothing wrong";
+  };
+  const auto nothing = [](const CsvTable&) {};
+  const auto forces = [](const CsvTable& t) { t.numbers("force", Dimension::force); };
+  EXPECT_NE(message("", nothing).find("there is no table in it"), std::string::npos);
+  EXPECT_NE(message("a,b\n1\n", nothing).find("table.csv:2: 1 fields under 2 headings"), std::string::npos);
+  EXPECT_NE(message("forse [N]\n1\n", forces).find("did you mean forse?"), std::string::npos);
+  EXPECT_NE(message("force [m]\n1\n", forces).find("the column force: "), std::string::npos);
+  EXPECT_NE(message("force [N]\n1 N\n", forces).find("no number in row 1 of the column force"),
+            std::string::npos);
 }
 
 TEST_F(Csv, ResumeDropsWhatCameAfterTheCheckpoint) {

@@ -69,6 +69,21 @@ TEST(Measures, ForcesOfATower) {
   EXPECT_EQ(force_histogram(sim, {}), (std::vector<int>{2}));
 }
 
+TEST(Measures, ContactsAreCountedByForceAndByWall) {
+  Simulation sim = tower();
+  EXPECT_EQ(value_of(sim, "plane.contacts"), 1);
+  EXPECT_NEAR(value_of(sim, "plane.contact_force_mean"), 100.0, 1e-9);
+  EXPECT_NEAR(value_of(sim, "plane.contact_force_max"), 100.0, 1e-9);
+  sim.force_limits = {20, 60.5, 80};
+  EXPECT_EQ(value_of(sim, "contacts_below_20_N"), 0);
+  EXPECT_EQ(value_of(sim, "contacts_20_60.5_N"), 1);  // between the balls
+  EXPECT_EQ(value_of(sim, "contacts_60.5_80_N"), 0);
+  EXPECT_EQ(value_of(sim, "contacts_above_80_N"), 1);
+  scenes::add_plane(sim, {0, 0, -1}, Vec3::UnitZ());
+  EXPECT_EQ(measures_of(sim).back().value(sim), 0);  // nothing touches it, and its mean is no 0/0
+  for (const Measure& m : measures_of(sim)) EXPECT_TRUE(std::isfinite(m.value(sim))) << m.name;
+}
+
 TEST(Measures, TwoPebblesOfOnePairAreTwoContactsAndOnePair) {
   Simulation sim = scenes::make_scene(with_gravity());
   sim.model.templates.push_back(make_clump_template("dumbbell", {{{-0.02, 0, 0}, 0.02}, {{0.02, 0, 0}, 0.02}},

@@ -1,4 +1,5 @@
 // A short track case on springs, from file to results.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "io/csv.h"
 #include "io/files.h"
 #include "lab/track/track_record.h"
 #include "lab/track/track_run.h"
@@ -80,6 +82,37 @@ TEST(TrackCase, StiffMeasuredSupportIsLikeStiffSprings) {
                               "track.springs.damping=1 N s/m", "track.sleeper.contact=1e12 N/m"});
   const double a = measure(measured, "departure.peak_force"), b = measure(springs, "departure.peak_force");
   EXPECT_NEAR(a, b, 0.03 * b);
+}
+
+TEST(TrackCase, SleepersOnSupportsOfTheirOwnAreAsOnMeasuredSupport) {
+  const TemporaryFolder folder;
+  write_file(folder.path / "curve.csv", "sinking [mm],force [kN]\n0,0\n1,100\n");
+  const std::string curve = (folder.path / "curve.csv").string();
+  const auto forces = [&](const std::vector<std::string>& set) {
+    run_short(folder.path, set);
+    return CsvTable(folder.path / "sleepers.csv").numbers("peak_force", Dimension::force);
+  };
+  const std::vector<double> all =
+      forces({R"(track.support={sinking=["0 mm","1 mm"], force=["0 kN","100 kN"], unloading="1e8 N/m"})"});
+  const std::vector<double> own = forces({fmt::format(
+      R"(track.supports=[{{from=-10, to=-3, curve="{0}"}}, {{from=-2, to=10, curve="{0}"}}])", curve)});
+  const std::vector<double> settled =
+      forces({fmt::format(R"(track.supports=[{{from=-10, to=10, curve="{0}", settlement="1 mm"}}])", curve),
+              "track.settlement=1 mm"});
+  const std::vector<double> some =
+      forces({fmt::format(R"(track.supports=[{{from=1, to=3, curve="{0}"}}])", curve)});
+  const std::vector<double> none = forces({});
+  ASSERT_EQ(own.size(), all.size());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    EXPECT_NEAR(own[k], all[k], 1e-6 * 1e5) << k;
+    // The lead-in lies 1 mm higher, which is felt a little behind the bridge.
+    if (k >= 23) {
+      EXPECT_NEAR(settled[k], all[k], 0.005 * 1e5) << k;
+    }
+  }
+  // Three sleepers behind the bridge on softer supports leave what lies far from them as it was.
+  EXPECT_NEAR(some[9], none[9], 1e-3 * none[9]);
+  EXPECT_GT(std::abs(some[24] - none[24]), 1e-2 * none[24]);
 }
 
 TEST(TrackCase, SleepersAreCountedFromTheBridge) {
