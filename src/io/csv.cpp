@@ -33,6 +33,12 @@ std::string csv_field(std::string_view text) {
   return field + '"';
 }
 
+std::string csv_line(std::span<const std::string> fields) {
+  std::string line;
+  for (std::size_t k = 0; k < fields.size(); ++k) line += (k > 0 ? "," : "") + csv_field(fields[k]);
+  return line + '\n';
+}
+
 CsvWriter::CsvWriter(const std::filesystem::path& path, std::size_t n_columns, std::size_t rows,
                      const char* mode)
     : path_(path), n_columns_(n_columns), rows_(rows), file_(std::fopen(path.c_str(), mode)) {

@@ -28,6 +28,9 @@ using Cell = std::variant<double, std::string_view>;
 /// A field as the CSV rules (RFC 4180) want it: in quotes where it holds a comma, a quote or a line break.
 std::string csv_field(std::string_view text);
 
+/// A row of such fields.
+std::string csv_line(std::span<const std::string> fields);
+
 /// Writes a table row by row. Every row is whole in the file as soon as add_row returns, so that a run that
 /// is cut off leaves a table that can be read. Numbers are in SI and read back to the same bits.
 class CsvWriter {

@@ -102,10 +102,7 @@ std::string unit_of(const std::string& measure, const std::vector<Outcome>& outc
 /// Rows of fields as a CSV file, written as a whole.
 class Rows {
  public:
-  void add(const std::vector<std::string>& fields) {
-    for (std::size_t k = 0; k < fields.size(); ++k) text_ += (k > 0 ? "," : "") + csv_field(fields[k]);
-    text_ += '\n';
-  }
+  void add(const std::vector<std::string>& fields) { text_ += csv_line(fields); }
   void write(const fs::path& path) const { write_file(path, text_); }
 
  private:
@@ -137,10 +134,15 @@ void write_failure(const Member& member, const std::string& cause, const fs::pat
   write_file(folder / failure_file, Json{{"cause", cause}, {"input", member.input}}.dump(1));
 }
 
-std::optional<double> measure_in(const Json& summary, const std::string& name) {
+std::optional<MeasureValue> find_in(const Json& summary, const std::string& name) {
   const Json* found = find_measure(summary, name);
   if (!found || !(*found)["value"].is_number()) return std::nullopt;
-  return (*found)["value"].get<double>();
+  return MeasureValue{(*found)["value"].get<double>(), (*found)["unit"].get<std::string>()};
+}
+
+std::optional<double> measure_in(const Json& summary, const std::string& name) {
+  const auto found = find_in(summary, name);
+  return found ? std::optional(found->value) : std::nullopt;
 }
 
 void write_members(const StudyInput& study, const std::vector<Condition>& conditions,
