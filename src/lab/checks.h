@@ -30,7 +30,7 @@ void check_stone_set(const Document& document, const CaseInput& experiment, cons
 void check_region(const Document& document, const CaseInput& experiment, const std::string& key,
                   const std::string& name);
 
-/// Names of walls and bodies: plain, and each once. There is one container at most.
+/// Names of walls and bodies: plain, and each once. There is one container at most, or trays.
 void check_names(const Document& document, const CaseInput& experiment);
 
 /// Names of stages: each once; then all that the stages themselves know (StageInput::check).
