@@ -136,7 +136,7 @@ TEST_F(ShearBox, TheRoomIsThatOfBothTraysBelowTheLid) {
   EXPECT_FALSE(is_in_room(sim, {0, 0, 0.125}));      // above the lid
 }
 
-TEST_F(ShearBox, AMixtureHasItsShareByMassWithinAStone) {
+TEST_F(ShearBox, long_AMixtureHasItsShareByMassWithinAStone) {
   for (const std::string share : {"0", "0.1", "0.5", "1"}) {
     const CaseInput in = read({"stages.mix.share=" + share});
     Simulation sim = make_simulation(*document_, in);
@@ -162,7 +162,7 @@ TEST_F(ShearBox, AMixtureHasItsShareByMassWithinAStone) {
 
 // The load stays on the cover while the lower tray moves, no stone leaves the trays, and the forces of what
 // moves and what stands balance.
-TEST_F(ShearBox, IsShearedUnderALoadThatStays) {
+TEST_F(ShearBox, long_IsShearedUnderALoadThatStays) {
   const CaseInput in = read();
   Simulation sim = make_simulation(*document_, in);
   const auto force = [&](const char* wall) {
