@@ -15,6 +15,7 @@
 #include "geom/solid.h"
 #include "geom/stone.h"
 #include "geom/stone_generator.h"
+#include "geom/wear.h"
 #include "io/picture.h"
 
 namespace trackbed {
@@ -29,6 +30,7 @@ struct Options {
   std::filesystem::path out = ".";
   int generate = 0;
   std::uint64_t seed = 1;
+  double wear = 0;
   bool convex = false, enlarge = false;
 
   ClumpFilling filling() const {
@@ -47,6 +49,9 @@ void declare(CLI::App& app, Options& o) {
       ->capture_default_str();
   app.add_option("--max-pebbles", o.max_pebbles, "stop there; 0 for no limit")->capture_default_str();
   app.add_flag("--enlarge", o.enlarge, "enlarge the pebbles together to the volume of the stone");
+  app.add_option("--wear", o.wear, "round edges over this share of the mean radius, as by wear")
+      ->check(CLI::Range(0.0, 0.5))
+      ->capture_default_str();
   app.add_option("--unit", o.unit, "unit of the files")
       ->check(CLI::IsMember({"m", "cm", "mm"}))
       ->capture_default_str();
@@ -82,18 +87,20 @@ void write_picture(const ClumpTemplate& clump, const std::filesystem::path& path
 }
 
 void print_header() {
-  fmt::print("{:24} {:>7} {:>9} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8} {:>6}  {}\n",
-             "stone", "facets", "V [cm3]", "L [mm]", "I [mm]", "S [mm]", "spher.", "convex.", "sieve",
-             "pebbles", "V/Vmesh", "mean[mm]", "max [mm]", "t [s]", "repairs");
+  fmt::print(
+      "{:24} {:>7} {:>9} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>7} {:>7} {:>8} {:>8} {:>6}  {}\n",
+      "stone", "facets", "V [cm3]", "L [mm]", "I [mm]", "S [mm]", "spher.", "convex.", "round.", "sieve",
+      "pebbles", "V/Vmesh", "mean[mm]", "max [mm]", "t [s]", "repairs");
 }
 
 void print_line(const Stone& stone, const std::vector<std::string>& repairs, double seconds) {
   const Shape& s = stone.shape;
   fmt::print(
-      "{:24} {:7} {:9.2f} {:7.1f} {:7.1f} {:7.1f} {:7.3f} {:7.3f} {:8.1f} {:7} {:7.4f} {:8.3f} {:8.3f} "
+      "{:24} {:7} {:9.2f} {:7.1f} {:7.1f} {:7.1f} {:7.3f} {:7.3f} {:7.3f} {:8.1f} {:7} {:7.4f} {:8.3f} "
+      "{:8.3f} "
       "{:6.2f}  {}\n",
       stone.clump.name, stone.clump.surface.facets.size(), stone.clump.volume * 1e6, s.length * 1e3,
-      s.breadth * 1e3, s.thickness * 1e3, s.sphericity, s.convexity, s.sieve_size * 1e3,
+      s.breadth * 1e3, s.thickness * 1e3, s.sphericity, s.convexity, s.roundness, s.sieve_size * 1e3,
       stone.clump.pebbles.size(), stone.error.volume_ratio, stone.error.mean_distance * 1e3,
       stone.error.max_distance * 1e3, seconds,
       repairs.empty() ? "none" : fmt::format("{}", fmt::join(repairs, "; ")));
@@ -102,7 +109,7 @@ void print_line(const Stone& stone, const std::vector<std::string>& repairs, dou
 void treat(const TriangleMesh& mesh, const std::string& name, const Options& options) {
   const auto begin = std::chrono::steady_clock::now();
   const Solid solid = make_solid(mesh, name);
-  const Stone stone = make_stone(solid.mesh, name, options.filling());
+  const Stone stone = make_stone(worn(solid.mesh, options.wear), name, options.filling());
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   write_picture(stone.clump, options.out / (name + ".png"));
   print_line(stone, solid.repairs, took.count());

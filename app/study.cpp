@@ -19,6 +19,7 @@
 #include "commands.h"
 #include "io/files.h"
 #include "io/progress.h"
+#include "lab/study/fits.h"
 #include "lab/study/results.h"
 #include "local_site.h"
 #include "slurm_site.h"
@@ -190,6 +191,7 @@ class StudyRun {
   void write_tables() const {
     write_members(study_, conditions_, members_, outcomes_, o_.out / "study.csv");
     write_table(study_, conditions_, members_, outcomes_, o_.out / "table.csv");
+    write_fits(study_, conditions_, members_, outcomes_, o_.out / "fits.csv");
   }
 
   void tell_progress() {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,32 @@ TriangleMesh wedge_mesh(const Vec3& size, double angle, int wedges) {
     mesh.facets.push_back({k, n + next, next});
   }
   return mesh;
+}
+
+TriangleMesh cylinder_mesh(double diameter, double height, int sides) {
+  TriangleMesh mesh;
+  for (const double z : {0.0, height})
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      mesh.vertices.push_back({0.5 * diameter * std::cos(angle), 0.5 * diameter * std::sin(angle), z});
+    }
+  const int base = 2 * sides, top = base + 1;
+  mesh.vertices.push_back({0, 0, 0});
+  mesh.vertices.push_back({0, 0, height});
+  for (int k = 0; k < sides; ++k) {
+    const int next = (k + 1) % sides;
+    mesh.facets.insert(mesh.facets.end(), {{base, next, k},
+                                           {top, sides + k, sides + next},
+                                           {k, next, sides + next},
+                                           {k, sides + next, sides + k}});
+  }
+  return mesh;
+}
+
+void add_rectangle(TriangleMesh& mesh, const Vec3& corner, const Vec3& a, const Vec3& b) {
+  const int n = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {corner, corner + a, corner + a + b, corner + b});
+  mesh.facets.insert(mesh.facets.end(), {{n, n + 1, n + 2}, {n, n + 2, n + 3}});
 }
 
 TriangleMesh icosphere(int level, double radius) {

@@ -166,7 +166,75 @@ void add_largest_faces(const TriangleMesh& hull, std::size_t count, std::vector<
     if (areas[k].norm() > 0) directions.push_back(areas[k].normalized());
 }
 
+/// Rays from the origin at ascending angles, evenly spread and through points that may be corners of the
+/// outline.
+struct Rays {
+  std::vector<double> angles;  // from -pi to pi
+  std::vector<Vec2> directions;
+
+  explicit Rays(const std::vector<Vec2>& points) {
+    constexpr int even = 720;
+    for (int k = 0; k < even; ++k) angles.push_back(2 * pi * k / even - pi);
+    for (const Vec2& p : points)
+      if (p.norm() > 0) angles.push_back(std::atan2(p.y(), p.x()));
+    std::sort(angles.begin(), angles.end());
+    angles.erase(std::unique(angles.begin(), angles.end()), angles.end());
+    for (double angle : angles) directions.emplace_back(std::cos(angle), std::sin(angle));
+  }
+
+  /// Lengthens what the rays reach to where they cross the line from a to b. Rays that pass its ends by
+  /// rounding count as crossing it there.
+  void extend(const Vec2& a, const Vec2& b, std::vector<double>& reach) const {
+    const double turn = cross(a, b);
+    if (turn < 0) return extend(b, a, reach);
+    constexpr double rounding = 1e-9;  // [rad]
+    const double first = std::atan2(a.y(), a.x()) - rounding, end = std::atan2(b.y(), b.x()) + rounding;
+    const double last = end < first ? end + 2 * pi : end, farthest = std::max(a.norm(), b.norm());
+    for (const double seam : {-2 * pi, 0.0, 2 * pi}) {
+      auto k = static_cast<std::size_t>(std::lower_bound(angles.begin(), angles.end(), first + seam) -
+                                        angles.begin());
+      for (; k < angles.size() && angles[k] <= last + seam; ++k) {
+        const double slope = cross(directions[k], b - a);
+        if (slope > 0) reach[k] = std::max(reach[k], std::min(turn / slope, farthest));
+      }
+    }
+  }
+
+  Outline outline(const std::vector<double>& reach) const {
+    Outline outline;
+    for (std::size_t k = 0; k < reach.size(); ++k) {
+      const std::size_t next = (k + 1) % reach.size();
+      const Vec2 p = reach[k] * directions[k], q = reach[next] * directions[next];
+      outline.area += 0.5 * cross(p, q);
+      outline.perimeter += (q - p).norm();
+    }
+    return outline;
+  }
+};
+
 }  // namespace
+
+double Outline::roundness() const {
+  return 4 * pi * area / (perimeter * perimeter);
+}
+
+Outline outline_along(const TriangleMesh& solid, const Vec3& direction) {
+  const Vec3 w = direction.normalized(), u = w.unitOrthogonal(), v = w.cross(u);
+  Eigen::AlignedBox2d box;
+  std::vector<Vec2> points;
+  for (const Vec3& p : solid.vertices) {
+    points.emplace_back(u.dot(p), v.dot(p));
+    box.extend(points.back());
+  }
+  for (Vec2& p : points) p -= box.center();
+  const Rays rays(points);
+  std::vector<double> reach(rays.angles.size(), 0.0);
+  for (const auto& facet : solid.facets)
+    for (std::size_t k = 0; k < 3; ++k)
+      rays.extend(points[static_cast<std::size_t>(facet[k])],
+                  points[static_cast<std::size_t>(facet[(k + 1) % 3])], reach);
+  return rays.outline(reach);
+}
 
 Shape measure_shape(const TriangleMesh& solid) {
   const MassProperties mass = mass_properties(solid);
@@ -191,6 +259,7 @@ Shape measure_shape(const TriangleMesh& solid) {
   shape.flatness = shape.thickness / shape.breadth;
   shape.sphericity = std::cbrt(pi) * std::pow(6 * mass.volume, 2.0 / 3) / mass.area;
   shape.convexity = mass.volume / mass_properties(hull).volume;
+  for (int k = 0; k < 3; ++k) shape.roundness += outline_along(solid, shape.box_axes.col(k)).roundness() / 3;
   shape.sieve_size = least(directions, hull.vertices, hole_side).value;
   return shape;
 }

@@ -13,6 +13,7 @@
 #include "geom/solid.h"
 #include "geom/stone.h"
 #include "geom/stone_generator.h"
+#include "geom/wear.h"
 #include "lab/checks.h"
 
 namespace trackbed {
@@ -62,7 +63,7 @@ std::optional<ClumpTemplate> stone_from_file(const std::filesystem::path& file, 
   TriangleMesh mesh = make_solid(read_mesh(file), file.string()).mesh;
   const double scale = 0.04 / std::cbrt(std::abs(mass_properties(mesh).volume));
   for (Vec3& v : mesh.vertices) v *= scale;
-  const Stone stone = make_stone(mesh, file.filename().string(), filling);
+  const Stone stone = make_stone(worn(mesh, in.wear), file.filename().string(), filling);
   if (stone.shape.length > in.largest_elongation * stone.shape.thickness) return std::nullopt;
   return stone.clump;
 }
@@ -90,9 +91,9 @@ std::vector<ClumpTemplate> make_templates(const Document& document, const std::s
       if (stones.files.empty()) {
         StoneRecipe recipe;
         recipe.sieve_size = 0.04;
-        made[k] =
-            make_stone(generate_stone(recipe, seed, static_cast<int>(k)), fmt::format("stone-{}", k), filling)
-                .clump;
+        made[k] = make_stone(worn(generate_stone(recipe, seed, static_cast<int>(k)), stones.wear),
+                             fmt::format("stone-{}", k), filling)
+                      .clump;
       } else {
         made[k] = stone_from_file(stones.files[k], stones, filling);
       }

@@ -20,6 +20,8 @@ struct GradingInput {
   std::vector<double> sieves{0.0224, 0.0315, 0.040, 0.050, 0.063};  // [m], ascending
   std::vector<double> passing{0, 0.07, 0.33, 0.71, 1};              // [-], from 0 to 1
   std::string size = "volume";                                      // what a sieve measures: volume | sieve
+  double scale = 1;                                                 // on all sieves
+  double sieve(std::size_t k) const { return scale * sieves[k]; }   // [m]
 };
 
 /// Where stone shapes come from and how finely they are filled with pebbles.
@@ -32,6 +34,7 @@ struct ShapesInput {
   double ratio = 0.3;
   int max_pebbles = 0;
   bool enlarge = false;           // pebbles, to the volume of the mesh
+  double wear = 0;                // of edges, over the stone's mean radius
   double largest_elongation = 3;  // stones with a longer L/S are left out
   std::string material = "ballast";
 };
@@ -67,7 +70,7 @@ struct RegionInput {
 
 const Kinds<RegionInput>& region_kinds();
 
-/// A wall, chosen by its kind (plane, box, mesh).
+/// A wall, chosen by its kind (plane, box, tray, mesh).
 struct WallInput {
   std::string material;
   std::string here;  // where it stands in the file, for errors found later
@@ -76,9 +79,12 @@ struct WallInput {
   virtual void build(const std::string& name, int material_index, Simulation& sim) const = 0;
   /// Whether the stones are filled into it.
   virtual bool is_container() const { return false; }
+  /// Whether it is one of several that together are the container.
+  virtual bool is_part_of_container() const { return false; }
 };
 
-/// A body with mass, such as the sleeper, chosen by its kind (block, mesh). It is placed by a stage.
+/// A body with mass, such as the sleeper, chosen by its kind (block, cylinder, mesh). It is placed by a
+/// stage.
 struct BodyInput {
   std::string material;
   std::string here;

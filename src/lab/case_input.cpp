@@ -23,6 +23,8 @@ void declare(Fields& f, GradingInput& in) {
       "size", in.size, {"volume", "sieve"},
       "what the sieve measures: volume, the diameter of the ball of equal volume; sieve, the smallest square "
       "hole that the stone passes");
+  f.number("scale", in.scale, {.above = 0},
+           "on all sieves: larger stones in their place, and fewer of them, for a bed that is run sooner");
   f.check(in.sieves.size() == in.passing.size() && in.sieves.size() >= 2, "passing",
           "there must be one share for each sieve, two at least", "give lists of equal length");
   f.check(ascends(in.sieves), "sieves", "the sieves do not ascend",
@@ -54,6 +56,9 @@ void declare(Fields& f, ShapesInput& in) {
   f.flag("enlarge", in.enlarge,
          "enlarge the pebbles of a stone together until their union has the volume of its mesh; by default "
          "they stay inside, where few pebbles fill little of it");
+  f.number("wear", in.wear, {.at_least = 0, .at_most = 0.5},
+           "edges and corners are rounded over this share of the stone's mean radius, as by wear; the volume "
+           "stays");
   f.number("largest_elongation", in.largest_elongation, {.above = 1},
            "stones from files whose length is more than this times their thickness are left out");
   f.text("material", in.material, "a material of the case");

@@ -79,13 +79,16 @@ void check_measures(const Document& document, const Simulation& sim, const std::
 
 void check_names(const Document& document, const CaseInput& in) {
   std::string container;
+  bool is_of_parts = false;
   for (const auto& [name, wall] : in.walls) {
     check_plain(document, "walls", name);
     if (!wall.input->is_container()) continue;
-    if (!container.empty())
+    const bool is_part = wall.input->is_part_of_container();
+    if (!container.empty() && !(is_of_parts && is_part))
       document.fail(wall.input->here + ".kind", "there are two containers, but one at most",
                     fmt::format("{} is the container; make the other walls of planes or a mesh", container));
     container = name;
+    is_of_parts = is_part;
   }
   for (const auto& [name, set] : in.stones.sets) check_plain(document, "stones.sets", name);
   for (const auto& [name, region] : in.regions) check_plain(document, "regions", name);

@@ -34,7 +34,7 @@ void check_region(const Document& document, const CaseInput& experiment, const s
 void check_measures(const Document& document, const Simulation& sim, const std::string& key,
                     const std::vector<std::string>& names);
 
-/// Names of walls and bodies: plain, and each once. There is one container at most.
+/// Names of walls and bodies: plain, and each once. There is one container at most, or trays.
 void check_names(const Document& document, const CaseInput& experiment);
 
 /// Names of the stages of one list: each once; then all that the stages themselves know (StageInput::check).

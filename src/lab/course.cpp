@@ -78,7 +78,7 @@ void Course::open() {
   start_.before = sim_.model;
   stages_[stage_].stage->open(sim_);
   sim_.number_by_place();
-  recorder_.open_stage(sim_);
+  sim_.places = places_of(sim_.state);
   start_.energy = energy_of(sim_.model, sim_.state).total();
   start_.step = sim_.state.step;
   start_.time = sim_.state.time;
@@ -159,8 +159,8 @@ void Course::take_up(std::string bytes) {
 
 /// Where all stands, in the order in which it is read.
 void Course::archive(Archive& a) {
-  a(sim_.state, static_cast<Conditions&>(sim_.model), sim_.model.domain, sim_.wall_reference, is_open_,
-    start_, summary_.stages);
+  a(sim_.state, static_cast<Conditions&>(sim_.model), sim_.model.domain, sim_.wall_reference, sim_.places,
+    is_open_, start_, summary_.stages);
   if (is_open_) stages_[stage_].stage->archive(a);
   recorder_.archive(a);
 }

@@ -13,7 +13,7 @@ std::vector<double> draw_sizes(const GradingInput& grading, const Space& space, 
     const double share = (grading.passing[band] - grading.passing[band - 1]) * solid_volume;
     double volume = 0;
     while (volume < share) {
-      const double size = rng.uniform(grading.sieves[band - 1], grading.sieves[band]);
+      const double size = rng.uniform(grading.sieve(band - 1), grading.sieve(band));
       const double more = space.volume_of_size(size);
       if (volume + more - share > share - volume) break;
       volume += more;
@@ -26,7 +26,7 @@ std::vector<double> draw_sizes(const GradingInput& grading, const Space& space, 
 
 double smallest_size(const GradingInput& grading) {
   const auto band = std::ranges::adjacent_find(grading.passing, std::less<>());
-  return grading.sieves[static_cast<std::size_t>(band - grading.passing.begin())];
+  return grading.sieve(static_cast<std::size_t>(band - grading.passing.begin()));
 }
 
 double scale_to_size(const GradingInput& grading, const Space& space, const ClumpTemplate& stone,
@@ -40,10 +40,10 @@ std::vector<double> passing(const GradingInput& grading, const Space& space,
   std::vector<double> shares;
   double all = 0;
   for (double size : sizes) all += space.volume_of_size(size);
-  for (double sieve : grading.sieves) {
+  for (std::size_t k = 0; k < grading.sieves.size(); ++k) {
     double below = 0;
     for (double size : sizes)
-      if (size < sieve) below += space.volume_of_size(size);
+      if (size < grading.sieve(k)) below += space.volume_of_size(size);
     shares.push_back(all > 0 ? below / all : 0);
   }
   return shares;

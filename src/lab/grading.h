@@ -25,7 +25,7 @@ double scale_to_size(const GradingInput& grading, const Space& space, const Clum
 std::vector<double> passing(const GradingInput& grading, const Space& space,
                             const std::vector<double>& sizes);
 
-/// The same as results of a stage, one a sieve.
+/// The same as results of a stage, one a sieve, called by the sieve of the file, before its scale.
 std::vector<Result> passing_results(const GradingInput& grading, const Space& space,
                                     const std::vector<double>& sizes);
 

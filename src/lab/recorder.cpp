@@ -87,12 +87,8 @@ void Recorder::begin() {
 
 void Recorder::archive(Archive& a) {
   std::uint64_t rows = series_ ? series_->rows() : 0;
-  a(rows, paraview_, places_, row_due_, frame_due_, row_step_, row_stage_);
+  a(rows, paraview_, row_due_, frame_due_, row_step_, row_stage_);
   if (a.reads()) series_ = CsvWriter::resume(folder_ / "series.csv", series_columns(measures_), rows);
-}
-
-void Recorder::open_stage(const Simulation& sim) {
-  places_ = places_of(sim.state);
 }
 
 void Recorder::after_step(const Simulation& sim) {
@@ -102,7 +98,7 @@ void Recorder::after_step(const Simulation& sim) {
     row_due_ = next_after(time, record_.every);
   }
   if (time >= frame_due_) {
-    paraview_.add_frame(sim, places_);
+    paraview_.add_frame(sim, sim.places);
     frame_due_ = next_after(time, *record_.paraview_every);
   }
 }
@@ -110,7 +106,7 @@ void Recorder::after_step(const Simulation& sim) {
 void Recorder::close_stage(const Simulation& sim) {
   if (row_step_ != sim.state.step || row_stage_ != sim.stage) add_row(sim);
   if (!record_.stages.empty() && std::ranges::find(record_.stages, sim.stage) == record_.stages.end()) return;
-  paraview_.add_frame(sim, places_);
+  paraview_.add_frame(sim, sim.places);
   if (record_.tables) write_tables(sim);
   if (record_.picture) draw_pictures(sim);
 }
@@ -125,7 +121,7 @@ void Recorder::add_row(const Simulation& sim) {
 
 void Recorder::write_tables(const Simulation& sim) const {
   write_contacts(sim, of_stage(sim, "contacts.csv"));
-  write_stones(sim, places_, of_stage(sim, "stones.csv"));
+  write_stones(sim, sim.places, of_stage(sim, "stones.csv"));
   for (const char* table : {"contacts.csv", "stones.csv"})
     write_file(folder_ / table, read_file(of_stage(sim, table)));
 }
@@ -133,7 +129,7 @@ void Recorder::write_tables(const Simulation& sim) const {
 void Recorder::draw_pictures(const Simulation& sim) const {
   draw_bed(sim, of_stage(sim, "bed.png"));
   draw_forces(sim, of_stage(sim, "forces.png"));
-  draw_displacements(sim, displacements(sim.state, places_), record_.displacement_scale,
+  draw_displacements(sim, displacements(sim.state, sim.places), record_.displacement_scale,
                      of_stage(sim, "displacements.png"));
   for (const char* picture : {"bed.png", "forces.png", "displacements.png"})
     write_file(folder_ / picture, read_file(of_stage(sim, picture)));
@@ -151,9 +147,9 @@ void Recorder::write_table(const Simulation& sim, const ResultTable& table) cons
 
 fs::path Recorder::write_failure(const Simulation& sim) const {
   const fs::path folder = folder_ / "failure";
-  Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim, places_);
+  Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim, sim.places);
   write_contacts(sim, folder / "contacts.csv");
-  write_stones(sim, places_, folder / "stones.csv");
+  write_stones(sim, sim.places, folder / "stones.csv");
   return folder;
 }
 

@@ -43,8 +43,6 @@ class Recorder {
   /// Where the files stand; those of a run that is taken up again lose what was written after that.
   void archive(Archive& a);
 
-  /// To be called after a stage was opened: displacements of stones are counted from here.
-  void open_stage(const Simulation& sim);
   /// After each step: writes what is due.
   void after_step(const Simulation& sim);
   /// After the last step of a stage.
@@ -67,7 +65,6 @@ class Recorder {
   std::vector<Measure> measures_;
   std::optional<CsvWriter> series_;
   Paraview paraview_;
-  StonePlaces places_;          // of the stones when the stage was opened
   double row_due_, frame_due_;  // [s]
   std::int64_t row_step_ = -1;  // of the last row
   std::string row_stage_;

@@ -1,5 +1,6 @@
 #include "lab/room.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "dem/overlap.h"
@@ -10,12 +11,26 @@ using Index = std::size_t;
 
 void check_room(const Document& document, const std::string& key, const Simulation& sim) {
   if (sim.container.isEmpty())
-    document.fail(key, "there is no container to fill",
-                  "add a wall of kind box, such as [walls.box], or a closed mesh with container = true");
+    document.fail(
+        key, "there is no container to fill",
+        "add a wall of kind box, such as [walls.box], trays, or a closed mesh with container = true");
+}
+
+Eigen::AlignedBox3d container_now(const Simulation& sim) {
+  if (sim.trays.empty()) return sim.container;
+  Eigen::AlignedBox3d box;
+  for (const Tray& tray : sim.trays)
+    box.extend(tray.inside.translated(sim.state.walls[static_cast<Index>(tray.wall)].pose.position));
+  return box;
 }
 
 bool is_in_room(const Simulation& sim, const Vec3& point) {
-  if (!sim.container.contains(point)) return false;
+  const auto holds = [&](const Tray& tray) {
+    const WallState& wall = sim.state.walls[static_cast<Index>(tray.wall)];
+    return wall.present && tray.inside.contains(wall.pose.to_body(point));
+  };
+  if (sim.trays.empty() ? !sim.container.contains(point) : std::ranges::none_of(sim.trays, holds))
+    return false;
   for (Index w = 0; w < sim.model.walls.size(); ++w) {
     if (!sim.state.walls[w].present) continue;
     const Wall& wall = sim.model.walls[w];

@@ -12,6 +12,9 @@ namespace trackbed {
 /// Refuses a case without a container, at a key.
 void check_room(const Document& document, const std::string& key, const Simulation& sim);
 
+/// Around the inside of the container: where its trays have been moved to, or as it was made [m].
+Eigen::AlignedBox3d container_now(const Simulation& sim);
+
 bool is_in_room(const Simulation& sim, const Vec3& point);
 
 /// Volume of the part of a box that is in the region [m^3]; by counting points 1/100 of its shortest side

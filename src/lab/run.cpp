@@ -32,6 +32,7 @@ std::vector<Result> carry_out(Simulation& sim, Stage& stage, const std::function
   stage.open(sim);
   if (opened) opened();
   sim.number_by_place();
+  sim.places = places_of(sim.state);
   while (!stage.finished(sim)) {
     stage.control(sim);
     sim.step();

@@ -36,6 +36,9 @@ void Simulation::drive(std::size_t wall, const Vec3& velocity) {
       w.boundary_work += 0.5 * body->mass * (velocity[a] * velocity[a] - w.velocity[a] * w.velocity[a]);
     w.velocity[a] = velocity[a];
   }
+  for (const Tray& tray : trays)
+    if (tray.wall == static_cast<int>(wall) && !model.domain.isEmpty())
+      model.domain.extend(tray.inside.translated(w.pose.position));
 }
 
 void Simulation::stop_stones() {
@@ -53,6 +56,21 @@ void Simulation::restore(const Conditions& before) {
     if (c.inertial_mass[i] != c.mass[i]) unscale_inertia(model, state, k);
   }
   changed();
+}
+
+StonePlaces places_of(const State& state) {
+  StonePlaces places;
+  for (std::size_t i = 0; i < state.clumps.id.size(); ++i)
+    places[state.clumps.id[i]] = state.clumps.position[i];
+  return places;
+}
+
+std::vector<Vec3> displacements(const State& state, const StonePlaces& before) {
+  const Clumps& c = state.clumps;
+  std::vector<Vec3> all(c.id.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    if (const auto old = before.find(c.id[i]); old != before.end()) all[i] = c.position[i] - old->second;
+  return all;
 }
 
 int add_wall(Simulation& sim, Wall wall, const Pose& pose) {

@@ -24,8 +24,23 @@ struct StoneSet {
   int material = 0;
 };
 
+/// A wall of thin sides; the insides of all trays together are the container, wherever they have been moved.
+struct Tray {
+  int wall = 0;
+  Eigen::AlignedBox3d inside;  // wall frame [m]
+  double rim = 0;              // width of its rim [m]
+  double rim_height = 0;       // where that lies, wall frame [m]
+};
+
 /// Tells whether a point [m] lies in a part of space.
 using Region = std::function<bool(const Vec3&)>;
+
+/// Where stones were, by their ids [m].
+using StonePlaces = std::map<int, Vec3>;
+StonePlaces places_of(const State& state);
+
+/// How far each stone has come from there [m]; zero for a stone that was not there.
+std::vector<Vec3> displacements(const State& state, const StonePlaces& before);
 
 struct Simulation {
   Model model;
@@ -33,10 +48,12 @@ struct Simulation {
   Workspace work;
   std::uint64_t seed = 1;
   Eigen::AlignedBox3d container;  // around the inside of the container [m]; empty: there is none
-  int container_mesh = -1;        // the wall whose inside is the container; -1: it is the box
+  int container_mesh = -1;        // the wall whose inside is the container; -1: it is the box, or the trays
+  std::vector<Tray> trays;        // none: the container is the box or the mesh
   std::vector<Pose>
       wall_reference;  // where each wall and body stood at the start, or where a stage placed it
   std::string stage;   // name of the one that runs
+  StonePlaces places;  // of the stones when it was opened
   std::vector<StoneSet> stone_sets;       // first that of [stones], without a name
   std::map<std::string, Region> regions;  // by the names of the case
   std::vector<double> force_limits;       // of the ranges of force in which contacts are counted [N]
@@ -48,7 +65,8 @@ struct Simulation {
   const StoneSet& stone_set(std::string_view name) const;
 
   /// Gives a wall or a held body this velocity [m/s], any other body its parts along the blocked axes; the
-  /// kinetic energy that a body gains is booked as work of the boundary.
+  /// kinetic energy that a body gains is booked as work of the boundary. The domain grows by where a tray
+  /// goes.
   void drive(std::size_t wall, const Vec3& velocity);
 
   /// Takes all speed from the stones.

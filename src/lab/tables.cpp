@@ -75,20 +75,6 @@ void write_contacts(const Simulation& sim, const std::filesystem::path& path) {
   });
 }
 
-StonePlaces places_of(const State& state) {
-  StonePlaces places;
-  for (Index i = 0; i < state.clumps.id.size(); ++i) places[state.clumps.id[i]] = state.clumps.position[i];
-  return places;
-}
-
-std::vector<Vec3> displacements(const State& state, const StonePlaces& before) {
-  const Clumps& c = state.clumps;
-  std::vector<Vec3> all(c.id.size(), Vec3::Zero());
-  for (Index i = 0; i < all.size(); ++i)
-    if (const auto old = before.find(c.id[i]); old != before.end()) all[i] = c.position[i] - old->second;
-  return all;
-}
-
 void write_stones(const Simulation& sim, const StonePlaces& before, const std::filesystem::path& path) {
   CsvWriter table(path, stone_columns());
   const Clumps& c = sim.state.clumps;

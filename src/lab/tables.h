@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <vector>
 
 #include "lab/simulation.h"
 
@@ -13,13 +11,6 @@ namespace trackbed {
 /// (stone_2 is -1 for a wall), contact point, normal from 1 to 2, elastic forces on side 2, overlap, and
 /// whether it slips.
 void write_contacts(const Simulation& sim, const std::filesystem::path& path);
-
-/// Where stones were, by their ids [m].
-using StonePlaces = std::map<int, Vec3>;
-StonePlaces places_of(const State& state);
-
-/// How far each stone has come from there [m]; zero for a stone that was not there.
-std::vector<Vec3> displacements(const State& state, const StonePlaces& before);
 
 /// One row for each stone; displacements are those from `before`, zero for a stone that is not in it. Forces
 /// are the sum of its contacts, without gravity; mean_stress is positive in compression.

@@ -71,6 +71,59 @@ void declare(Fields& f, BoxInput& in) {
            "inside; the floor is at z = 0, the middle at x = y = 0, the sides go on above the height");
 }
 
+/// Thin sides of triangles, as one wall that can be moved. In two dimensions it has no sides along y.
+struct TrayInput : WallInput {
+  Vec3 size = Vec3::Zero();
+  Vec3 at = Vec3::Zero();
+  bool floor = true;
+  double rim = 0;  // [m]
+
+  void build(const std::string& name, int material_index, Simulation& sim) const override {
+    const double x = size.x(), y = size.y(), z = size.z();
+    const Vec3 low(-x / 2, -y / 2, 0), along_x(x, 0, 0), along_y(0, y, 0), up(0, 0, z);
+    TriangleMesh mesh;
+    add_rectangle(mesh, low, along_y, up);
+    add_rectangle(mesh, low + along_x, up, along_y);
+    if (!sim.model.space.is_plane()) {
+      add_rectangle(mesh, low, up, along_x);
+      add_rectangle(mesh, low + along_y, along_x, up);
+    }
+    if (floor) add_rectangle(mesh, low, along_x, along_y);
+    const double rim_height = floor ? z : 0;
+    if (rim > 0) add_rim(mesh, low + Vec3(0, 0, rim_height), sim.model.space.is_plane());
+    const int wall = add_wall(sim, {make_mesh_wall(name, mesh), material_index, {}}, {at, Quat::Identity()});
+    sim.trays.push_back({wall, {low, low + size}, rim, rim_height});
+    sim.container.extend(at + low);
+    sim.container.extend(at + low + size);
+  }
+  bool is_container() const override { return true; }
+  bool is_part_of_container() const override { return true; }
+
+ private:
+  /// Around the rectangle whose low corner this is.
+  void add_rim(TriangleMesh& mesh, const Vec3& low, bool only_along_x) const {
+    const Vec3 x(size.x(), 0, 0), y(0, size.y(), 0), out_x(rim, 0, 0), out_y(0, rim, 0);
+    add_rectangle(mesh, low - out_x, out_x, y);
+    add_rectangle(mesh, low + x, out_x, y);
+    if (only_along_x) return;
+    const Vec3 whole = x + 2 * out_x;
+    add_rectangle(mesh, low - out_x - out_y, whole, out_y);
+    add_rectangle(mesh, low - out_x + y, whole, out_y);
+  }
+};
+
+void declare(Fields& f, TrayInput& in) {
+  in.here = f.here();
+  f.text(required("material"), in.material, "a material of the case");
+  f.vector(required("size"), in.size, Dimension::length, {.above = 0}, "inside");
+  f.vector("at", in.at, Dimension::length, {}, "where the middle of its base stands");
+  f.flag("floor", in.floor, "whether it has one; without it is a frame, open below");
+  f.quantity(
+      "rim", in.rim, Dimension::length, {.at_least = 0},
+      "width of a rim that leads outwards, along the upper edge, or the lower edge of a frame: no stone "
+      "falls through where trays are shifted on each other");
+}
+
 struct MeshWallInput : WallInput {
   std::filesystem::path file;
   double unit = 1;
@@ -134,6 +187,19 @@ void declare(Fields& f, WedgeInput& in) {
             "side by side along the length, their ridges across it");
 }
 
+struct CylinderInput : BodyInput {
+  double diameter = 0, height = 0;  // [m]
+
+  TriangleMesh shape() const override { return cylinder_mesh(diameter, height); }
+};
+
+void declare(Fields& f, CylinderInput& in) {
+  declare_body(f, in);
+  f.quantity(required("diameter"), in.diameter, Dimension::length, {.above = 0},
+             "of the circle around its prism of 64 sides");
+  f.quantity(required("height"), in.height, Dimension::length, {.above = 0}, "along z");
+}
+
 struct MeshBodyInput : BodyInput {
   std::filesystem::path file;
   double unit = 1;
@@ -157,6 +223,10 @@ const Kinds<WallInput>& wall_kinds() {
       "wall",
       {kind_of<WallInput, PlaneInput>("plane", "an unbounded plane"),
        kind_of<WallInput, BoxInput>("box", "a floor and four sides, open above: the container"),
+       kind_of<WallInput, TrayInput>(
+           "tray",
+           "thin sides, with or without floor and rim, as one wall that can be moved; "
+           "all trays together are the container"),
        kind_of<WallInput, MeshWallInput>("mesh", "triangles from a file")}};
   return kinds;
 }
@@ -165,6 +235,7 @@ const Kinds<BodyInput>& body_kinds() {
   static const Kinds<BodyInput> kinds{
       "body",
       {kind_of<BodyInput, BlockInput>("block", "a cuboid, such as a sleeper"),
+       kind_of<BodyInput, CylinderInput>("cylinder", "an upright cylinder, such as a loading plate"),
        kind_of<BodyInput, WedgeInput>("wedge", "a cuboid on wedges that point down"),
        kind_of<BodyInput, MeshBodyInput>("mesh", "a solid from a file")}};
   return kinds;

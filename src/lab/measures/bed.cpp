@@ -22,6 +22,7 @@ class Surface {
     step_ = {where.sizes().x() / nx_, where.sizes().y() / ny_};
     height_.assign(static_cast<Index>(nx_ * ny_), 0.0);
     covered_.assign(height_.size(), false);
+    left_out_.assign(height_.size(), false);
   }
 
   void add_ball(const Vec3& centre, double radius) {
@@ -45,18 +46,34 @@ class Surface {
               });
   }
 
-  /// Mean of the free lines, a tenth of the highest dropped; of all lines when none is free.
+  /// Lines that are no part of the surface.
+  template <class Ends>
+  void leave_out(Ends&& is_left_out) {
+    for (Index k = 0; k < height_.size(); ++k) {
+      const int i = static_cast<int>(k) % nx_, j = static_cast<int>(k) / nx_;
+      left_out_[k] = is_left_out(line(i, j));
+    }
+  }
+
+  /// Mean of the free lines, a tenth of the highest dropped; of those below bodies too when none is free.
   double mean() const {
-    std::vector<double> free;
-    for (Index k = 0; k < height_.size(); ++k)
+    std::vector<double> free, all;
+    for (Index k = 0; k < height_.size(); ++k) {
+      if (left_out_[k]) continue;
+      all.push_back(height_[k]);
       if (!covered_[k]) free.push_back(height_[k]);
-    if (free.empty()) free = height_;
+    }
+    if (free.empty()) free = all.empty() ? height_ : all;
     std::ranges::sort(free);
     free.resize(free.size() - free.size() / 10);
     return std::accumulate(free.begin(), free.end(), 0.0) / static_cast<double>(free.size());
   }
 
  private:
+  Eigen::Vector2d line(int i, int j) const {
+    return {low_.x() + (i + 0.5) * step_.x(), low_.y() + (j + 0.5) * step_.y()};
+  }
+
   static int count(double length) { return std::max(1, static_cast<int>(std::lround(length / cell))); }
 
   /// Index of the first line at or after x along an axis.
@@ -69,15 +86,30 @@ class Surface {
     const int i1 = first(high.x(), low_.x(), step_.x(), nx_), j1 = first(high.y(), low_.y(), step_.y(), ny_);
     for (int j = first(low.y(), low_.y(), step_.y(), ny_); j < j1; ++j)
       for (int i = first(low.x(), low_.x(), step_.x(), nx_); i < i1; ++i)
-        visit(static_cast<Index>(j * nx_ + i),
-              Eigen::Vector2d(low_.x() + (i + 0.5) * step_.x(), low_.y() + (j + 0.5) * step_.y()));
+        visit(static_cast<Index>(j * nx_ + i), line(i, j));
   }
 
   Eigen::Vector2d low_, step_;
   int nx_, ny_;
   std::vector<double> height_;  // above z = 0 [m]
-  std::vector<bool> covered_;
+  std::vector<bool> covered_, left_out_;
 };
+
+/// Whether a vertical line meets a rim above which the container does not go on: what lies below is no
+/// surface.
+bool ends_at_a_rim(const Simulation& sim, const Eigen::Vector2d& line) {
+  constexpr double just_above = 1e-6;  // [m]
+  return std::ranges::any_of(sim.trays, [&](const Tray& tray) {
+    const WallState& wall = sim.state.walls[static_cast<Index>(tray.wall)];
+    if (!wall.present || tray.rim == 0) return false;
+    const Vec3 at(line.x(), line.y(), wall.pose.position.z() + tray.rim_height + just_above);
+    const Eigen::Vector2d seen = wall.pose.to_body(at).head<2>();
+    const Eigen::AlignedBox2d hole(tray.inside.min().head<2>(), tray.inside.max().head<2>());
+    const Eigen::Vector2d rim = Eigen::Vector2d::Constant(tray.rim);
+    const Eigen::AlignedBox2d edge(hole.min() - rim, hole.max() + rim);
+    return edge.contains(seen) && !hole.contains(seen) && !is_in_room(sim, at);
+  });
+}
 
 }  // namespace
 
@@ -85,6 +117,8 @@ double bed_surface(const Simulation& sim, const Eigen::AlignedBox2d& where) {
   Eigen::AlignedBox2d lines = where;
   if (sim.model.space.is_plane()) lines.min().y() = lines.max().y() = 0;  // discs reach through the thickness
   Surface surface(lines);
+  if (!sim.trays.empty())
+    surface.leave_out([&](const Eigen::Vector2d& line) { return ends_at_a_rim(sim, line); });
   const Clumps& c = sim.state.clumps;
   for (Index i = 0; i < c.id.size(); ++i) {
     for (const Pebble& pebble : sim.model.templates[static_cast<Index>(c.shape[i])].pebbles) {
@@ -108,6 +142,12 @@ double solid_volume(const Simulation& sim) {
   double sum = 0;
   for (Index i = 0; i < sim.state.clumps.id.size(); ++i) sum += volume_of(sim, i);
   return sum;
+}
+
+double largest_displacement(const Simulation& sim) {
+  double largest = 0;
+  for (const Vec3& moved : displacements(sim.state, sim.places)) largest = std::max(largest, moved.norm());
+  return largest;
 }
 
 double weight(const Simulation& sim) {
@@ -134,7 +174,7 @@ double median_size(const Simulation& sim) {
 }
 
 double bed_height(const Simulation& sim) {
-  const Eigen::AlignedBox3d& box = sim.container;
+  const Eigen::AlignedBox3d box = container_now(sim);
   return bed_surface(sim, {box.min().head<2>(), box.max().head<2>()});
 }
 
@@ -171,9 +211,9 @@ double pebble_volume(const Simulation& sim) {
 
 double bed_volume(const Simulation& sim) {
   const double height = bed_height(sim);
-  Eigen::AlignedBox3d below = sim.container;
+  Eigen::AlignedBox3d below = container_now(sim);
   below.max().z() = height;
-  if (sim.container_mesh >= 0)
+  if (sim.container_mesh >= 0 || !sim.trays.empty())
     return height > below.min().z() ? volume_in(below, [&](const Vec3& x) { return is_in_room(sim, x); })
                                     : 0.0;
   double volume = below.sizes().prod();

@@ -20,6 +20,7 @@ double per_stone(const Simulation& sim, double sum);
 /// Stones that touch fewer than two other bodies: nothing is passed on through them.
 int rattlers(const Simulation& sim);
 
+double largest_displacement(const Simulation& sim);   ///< of a stone since the stage began [m]
 double mean_contact_force(const Simulation& sim);     ///< magnitude, elastic [N]
 double largest_contact_force(const Simulation& sim);  ///< [N]
 double largest_overlap(const Simulation& sim);        ///< over the smaller stone's equal-volume radius [-]

@@ -18,6 +18,8 @@ std::vector<Measure> stone_measures() {
       {"pebbles", none, "of all stones", pebbles},
       {"solid_volume", volume, "of all stones, overlaps counted twice", solid_volume},
       {"weight", force, "of stones and bodies", weight},
+      {"stone_displacement_max", length, "of the stone that has moved most since the stage began",
+       largest_displacement},
       {"d50", length, "equal-volume diameter that half of the mass is below", median_size},
   };
 }

@@ -157,10 +157,10 @@ class Fill : public Stage {
 void FillInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
   if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
   check_room(document, here, sim);
-  if (sim.container_mesh >= 0)
-    document.fail(here + ".kind", "a column of stones cannot fall into a closed container",
+  if (sim.container_mesh >= 0 || !sim.trays.empty())
+    document.fail(here + ".kind", "a column of stones falls into a box only",
                   "use the stage scatter, which places stones inside");
-  const double largest = experiment.stones.grading.sieves.back();
+  const double largest = experiment.stones.grading.scale * experiment.stones.grading.sieves.back();
   const double fewest = (1.0 - porosity) * sim.container.volume() / sim.model.space.volume_of_size(largest);
   if (fewest > 1e8)
     document.fail(here, "the container takes more than a hundred million stones",

@@ -1,8 +1,12 @@
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <tuple>
+#include <utility>
 
 #include "base/rng.h"
 #include "lab/case.h"
+#include "lab/in_touch.h"
 #include "lab/room.h"
 #include "lab/stages/parting.h"
 #include "lab/stages/selection.h"
@@ -13,11 +17,15 @@ namespace {
 
 struct ReplaceInput : StageInput {
   std::string set;
+  std::optional<std::string> from;
   Selection where;
+  double share = 1;  // by mass
+  double stiffness = 0.1;
   double mean_overlap = 0.005;
   double time_limit = 1;  // [s]
   void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
     if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
+    if (from && !from->empty()) check_stone_set(document, experiment, here + ".from", *from);
     where.check(document, experiment, here);
   }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
@@ -26,9 +34,17 @@ struct ReplaceInput : StageInput {
 void declare(Fields& f, ReplaceInput& in) {
   declare_common(f, in);
   f.text("set", in.set, "a set of stones.sets whose shapes take over; by default those of [stones]");
+  f.text("from", in.from,
+         "only stones of this set of stones.sets are replaced, or, with \"\", of those of [stones]");
   declare_selection(f, in.where, "are replaced");
+  f.number("share", in.share, {.at_least = 0, .at_most = 1},
+           "share by mass that the set then has of these stones; which are replaced is drawn at random");
   f.number("mean_overlap", in.mean_overlap, {.above = 0, .below = 1},
            "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
+  f.number(
+      "stiffness", in.stiffness, {.above = 0, .at_most = 1},
+      "share of their stiffness that stones have against each other while they part: low, they press none of "
+      "themselves through a wall of triangles");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
 }
@@ -44,9 +60,13 @@ class Replace : public Stage {
     Rng rng(sim.seed, "replace " + in_.name);
     Clumps& c = sim.state.clumps;
     std::vector<Reshaped> stones;
-    for (int clump = 0; clump < c.size(); ++clump) {
+    const std::vector<int> order = selected(sim);
+    Mixture mixture;
+    for (int clump : order) mixture.kept += c.mass[static_cast<std::size_t>(clump)];
+    for (int clump : order) {
       const auto k = static_cast<std::size_t>(clump);
-      if (!in_.where.contains(sim, c.position[k])) continue;
+      const double mass = mass_in(sim, set, k);
+      if (!mixture.is_nearer_with(mass, c.mass[k], in_.share)) continue;
       const int shape = set.first + static_cast<int>(rng.index(static_cast<std::uint32_t>(set.count)));
       const Space& space = sim.model.space;
       const auto size = [&](int t) {
@@ -54,14 +74,18 @@ class Replace : public Stage {
       };
       stones.push_back(
           {clump, shape, c.scale[k] * size(c.shape[k]) / size(shape), set.material, Quat::Identity()});
-      if (find_orientation(sim, stones.back(), rng)) continue;
+      if (find_orientation(sim, stones.back(), rng)) {
+        mixture.take(mass, c.mass[k]);
+        continue;
+      }
       stones.pop_back();
       ++left_;
     }
+    mass_share_ = mixture.now();
     reshape(sim.model, sim.state, stones);
     sim.stop_stones();
     replaced_ = static_cast<int>(stones.size());
-    parting_.open(sim, 0.1);
+    parting_.open(sim, in_.stiffness);
   }
 
   void control(Simulation& sim) override { parting_.control(sim); }
@@ -74,13 +98,57 @@ class Replace : public Stage {
     return {{"replaced", static_cast<double>(replaced_), Dimension::none},
             {"left", static_cast<double>(left_), Dimension::none},
             {"share", replaced_ / all, Dimension::none},
+            {"mass_share", mass_share_, Dimension::none},
             {"time", parting_.time(sim), Dimension::time},
             {"mean_overlap", parting_.overlaps().mean, Dimension::none},
             {"largest_overlap", parting_.overlaps().largest, Dimension::none}};
   }
-  void archive(Archive& a) override { a(parting_, replaced_, left_); }
+  void archive(Archive& a) override { a(parting_, replaced_, left_, mass_share_); }
 
  private:
+  /// Masses on the way to a mixture [kg].
+  struct Mixture {
+    double replaced = 0, kept = 0;
+
+    double now() const { return replaced > 0 ? replaced / (replaced + kept) : 0.0; }
+    void take(double mass, double instead_of) {
+      replaced += mass;
+      kept -= instead_of;
+    }
+    /// Whether one more brings the share by mass nearer to the one wanted.
+    bool is_nearer_with(double mass, double instead_of, double wanted) const {
+      if (wanted == 1) return true;
+      Mixture next = *this;
+      next.take(mass, instead_of);
+      return std::abs(next.now() - wanted) < std::abs(now() - wanted);
+    }
+  };
+
+  bool is_selected(const Simulation& sim, std::size_t clump) const {
+    if (!in_.where.contains(sim, sim.state.clumps.position[clump])) return false;
+    if (!in_.from) return true;
+    const StoneSet& from = sim.stone_set(*in_.from);
+    const int shape = sim.state.clumps.shape[clump];
+    return shape >= from.first && shape < from.first + from.count;
+  }
+
+  /// All stones of the selection; at random where only a part is replaced.
+  std::vector<int> selected(const Simulation& sim) const {
+    std::vector<int> order;
+    for (int clump = 0; clump < sim.state.clumps.size(); ++clump)
+      if (is_selected(sim, static_cast<std::size_t>(clump))) order.push_back(clump);
+    if (in_.share == 1) return order;
+    Rng rng(sim.seed, "share " + in_.name);
+    for (std::size_t k = order.size(); k > 1; --k)
+      std::swap(order[k - 1], order[rng.index(static_cast<std::uint32_t>(k))]);
+    return order;
+  }
+
+  /// Mass of a stone when it is one of the set [kg].
+  static double mass_in(const Simulation& sim, const StoneSet& set, std::size_t clump) {
+    return sim.model.materials[static_cast<std::size_t>(set.material)].density * volume_of(sim, clump);
+  }
+
   /// Any orientation; beside walls one in which the stone keeps clear of all of them, or at least of those of
   /// triangles, if one of many tries does. A corner behind triangles would be pushed out on the other side,
   /// planes push it back. Returns whether there is such an orientation.
@@ -107,6 +175,7 @@ class Replace : public Stage {
   ReplaceInput in_;
   Parting parting_;
   int replaced_ = 0;
+  double mass_share_ = 0;
   int left_ = 0;  // that have no room to be replaced beside a wall
 };
 

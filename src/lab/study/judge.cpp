@@ -160,6 +160,12 @@ std::vector<Judged> read_runs(const JudgeInput& rule, const std::vector<fs::path
   return runs;
 }
 
+std::string unit_of(const std::string& measure, const std::vector<Judged>& runs) {
+  for (const Judged& run : runs)
+    if (const auto found = find_in(run.summary, measure)) return found->unit;
+  return "-";
+}
+
 const char* verdict_of(const Judged& run) {
   if (run.is_reference) return "reference";
   return run.refusal.empty() ? "accepted" : "refused";
@@ -174,16 +180,15 @@ struct Part {
 void add_part(const JudgeInput& rule, const std::vector<Judged>& runs, const Part& part, CsvRows& rows) {
   for (const std::string& measure : rule.measures) {
     std::vector<double> values;
-    std::string unit = "-";
     for (const Judged& run : runs) {
       if (run.is_reference || run.group != part.group) continue;
       if (part.verdict && std::string_view(verdict_of(run)) != part.verdict) continue;
       if (const auto value = measure_in(run.summary, measure)) values.push_back(*value);
-      unit = unit_in(run.summary, measure);
     }
     const Estimate e = estimate(values);
-    rows.add({part.group, part.verdict ? part.verdict : "all", measure, unit, std::to_string(e.n),
-              csv_number(e.mean), csv_number(e.deviation), csv_number(e.low()), csv_number(e.high())});
+    rows.add({part.group, part.verdict ? part.verdict : "all", measure, unit_of(measure, runs),
+              std::to_string(e.n), csv_number(e.mean), csv_number(e.deviation), csv_number(e.low()),
+              csv_number(e.high())});
   }
 }
 
@@ -214,7 +219,7 @@ void write_judgement(const JudgeInput& rule, const std::vector<Judged>& runs, co
       "run",       "group",     "verdict",           "reason",        "distance [-]", "place [-]",
       "share [-]", "force [N]", "largest force [N]", "largest at [-]"};
   for (const std::string& measure : rule.measures)
-    header.push_back(fmt::format("{} [{}]", measure, unit_in(runs.front().summary, measure)));
+    header.push_back(fmt::format("{} [{}]", measure, unit_of(measure, runs)));
   rows.add(header);
   std::vector<std::string> groups;
   for (const Judged& run : runs) {

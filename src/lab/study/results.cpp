@@ -94,7 +94,7 @@ std::vector<std::string> measures_of(const StudyInput& study, const std::vector<
 
 std::string unit_of(const std::string& measure, const std::vector<Outcome>& outcomes) {
   for (const Outcome& outcome : outcomes)
-    if (const std::string unit = unit_in(outcome.summary, measure); unit != "-") return unit;
+    if (const auto found = find_in(outcome.summary, measure)) return found->unit;
   return "-";
 }
 
@@ -118,15 +118,15 @@ void write_failure(const Member& member, const std::string& cause, const fs::pat
   write_file(folder / failure_file, Json{{"cause", cause}, {"input", member.input}}.dump(1));
 }
 
-std::optional<double> measure_in(const Json& summary, const std::string& name) {
+std::optional<MeasureValue> find_in(const Json& summary, const std::string& name) {
   const Json* found = find_measure(summary, name);
   if (!found || !(*found)["value"].is_number()) return std::nullopt;
-  return (*found)["value"].get<double>();
+  return MeasureValue{(*found)["value"].get<double>(), (*found)["unit"].get<std::string>()};
 }
 
-std::string unit_in(const Json& summary, const std::string& name) {
-  const Json* found = find_measure(summary, name);
-  return found ? (*found)["unit"].get<std::string>() : "-";
+std::optional<double> measure_in(const Json& summary, const std::string& name) {
+  const auto found = find_in(summary, name);
+  return found ? std::optional(found->value) : std::nullopt;
 }
 
 void write_members(const StudyInput& study, const std::vector<Condition>& conditions,

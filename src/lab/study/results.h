@@ -31,8 +31,12 @@ void write_failure(const Member& member, const std::string& cause, const std::fi
 /// nothing when it has none.
 std::optional<double> measure_in(const nlohmann::ordered_json& summary, const std::string& name);
 
-/// Unit of that value; "-" when there is none.
-std::string unit_in(const nlohmann::ordered_json& summary, const std::string& name);
+/// Value and unit of such a measure.
+struct MeasureValue {
+  double value = 0;
+  std::string unit;
+};
+std::optional<MeasureValue> find_in(const nlohmann::ordered_json& summary, const std::string& name);
 
 /// study.csv: a row a member with every changed key, seed, status, measures with units, seconds and state
 /// hash. Throws InputError for a measure that no finished member has.

@@ -22,4 +22,18 @@ struct Estimate {
 /// out.
 Estimate estimate(const std::vector<double>& values);
 
+/// A straight line y = intercept + slope x through n points by least squares, the y with errors that are
+/// independent, normal and equally large. Half widths are of the 95 % intervals of each alone; NaN for n < 3.
+struct LineFit {
+  int n = 0;
+  double intercept = 0, slope = 0;  // NaN for n < 2 or when all x are the same
+  double intercept_half_width = 0, slope_half_width = 0;
+  double r_squared = 0;  // 1 - squares of the residuals / squares about the mean; NaN when all y are the same
+};
+
+/// With t = t(0.975, n - 2), s^2 = squares of the residuals / (n - 2) and S = sum of (x - mean)^2: half
+/// widths t s/sqrt(S) of the slope and t s sqrt(1/n + mean^2/S) of the intercept (Draper & Smith, Applied
+/// Regression Analysis, ch. 1). Points with a value that is not a number are left out.
+LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y);
+
 }  // namespace trackbed

@@ -27,6 +27,14 @@ void declare(Fields& f, SweepInput& in) {
   f.check(!in.values.empty(), "values", "there is no value", "list at least one");
 }
 
+void declare(Fields& f, FitInput& in) {
+  f.text(required("name"), in.name, "what the line is called in fits.csv");
+  f.text(required("x"), in.x, "key of the case that conditions differ in: stages.press.force_max");
+  f.text(required("y"), in.y, "measure, as in measures: shear.force_peak");
+  f.quantity("area", in.area, Dimension::area, {.above = 0},
+             "forces are divided by it, so that the line is one of stresses");
+}
+
 void declare(Fields& f, StudyInput& in) {
   f.text(required("title"), in.title, "what the study is about");
   f.path(required("case"), in.base, "the case file that all members start from");
@@ -41,6 +49,8 @@ void declare(Fields& f, StudyInput& in) {
              "conditions that are written out; by default one, the case as it stands");
   f.sequence("sweep", in.sweeps,
              "keys that go through lists of values, crossed with each other and the conditions");
+  f.sequence("fits", in.fits,
+             "straight lines through the members of all conditions that differ in x alone, for fits.csv");
 }
 
 namespace {
@@ -67,6 +77,14 @@ void check_sweeps(const Document& document, const StudyInput& study) {
                                 leader->values.size(), sweep.along),
                     "give as many of each");
   }
+}
+
+void check_fits(const Document& document, const StudyInput& study, const std::vector<Condition>& conditions) {
+  for (std::size_t k = 0; k < study.fits.size(); ++k)
+    if (std::ranges::none_of(conditions,
+                             [&](const Condition& c) { return c.inputs.contains(study.fits[k].x); }))
+      document.fail(fmt::format("fits.{}.x", k), fmt::format("no condition changes {}", study.fits[k].x),
+                    "name a key of a sweep or of conditions");
 }
 
 /// The condition with one more key.
@@ -118,6 +136,7 @@ std::vector<Condition> conditions_of(const Document& document, const StudyInput&
     if (!names.insert(plain(condition.name)).second)
       document.fail("conditions", fmt::format("two conditions are called {}", condition.name),
                     "give each a name of its own");
+  check_fits(document, study, all);
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,14 @@ struct SweepInput {
   std::string along;  // key of another sweep that it goes along with instead
 };
 
+/// A straight line through a measure against a key of the case.
+struct FitInput {
+  std::string name;
+  std::string x;               // key of the case, a quantity
+  std::string y;               // measure
+  std::optional<double> area;  // that forces are divided by [m^2]
+};
+
 struct StudyInput {
   std::string title;
   std::filesystem::path base;
@@ -35,6 +44,7 @@ struct StudyInput {
   std::vector<std::string> measures;  // of the tables; empty: all results of stages
   std::vector<ConditionInput> conditions;
   std::vector<SweepInput> sweeps;
+  std::vector<FitInput> fits;
 };
 
 void declare(Fields& f, StudyInput& in);

@@ -5,7 +5,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "base/rng.h"
@@ -56,6 +59,65 @@ TEST(shape, notch_lowers_the_convexity) {
   std::erase(mesh.facets, std::array<int, 3>{5, 7, 6});
   mesh.facets.insert(mesh.facets.end(), {{4, 5, 8}, {5, 7, 8}, {7, 6, 8}, {6, 4, 8}});
   EXPECT_NEAR(measure_shape(mesh).convexity, (8 - 4 * 1.5 / 3) / 8, 1e-12);
+}
+
+/// An upright prism of height 1 over an outline seen anticlockwise from above, all of which the origin sees.
+TriangleMesh prism(const std::vector<std::pair<double, double>>& outline) {
+  TriangleMesh mesh;
+  const int n = static_cast<int>(outline.size());
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, z});
+  mesh.vertices.push_back({0, 0, 0});
+  mesh.vertices.push_back({0, 0, 1});
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    mesh.facets.insert(
+        mesh.facets.end(),
+        {{2 * n, next, k}, {2 * n + 1, n + k, n + next}, {k, next, n + next}, {k, n + next, n + k}});
+  }
+  return mesh;
+}
+
+/// A polygon whose corners lie in turn at the two radii.
+TriangleMesh star(int points, double outer, double inner) {
+  std::vector<std::pair<double, double>> outline;
+  for (int k = 0; k < 2 * points; ++k) {
+    const double r = k % 2 == 0 ? outer : inner, angle = std::numbers::pi * k / points;
+    outline.emplace_back(r * std::cos(angle), r * std::sin(angle));
+  }
+  return prism(outline);
+}
+
+TEST(roundness, of_outlines_with_a_formula) {
+  const Vec3 up = Vec3::UnitZ();
+  const double pi = std::numbers::pi;
+  EXPECT_NEAR(outline_along(testing::box_mesh(Vec3::Ones()), up).roundness(), pi / 4, 1e-9);
+  EXPECT_NEAR(outline_along(testing::box_mesh({2, 1, 1}), up).roundness(), 4 * pi * 2 / 36, 1e-9);
+  EXPECT_NEAR(outline_along(star(3, 1, 0.5), up).roundness(), pi / (3 * std::sqrt(3.0)), 1e-9);  // triangle
+  EXPECT_NEAR(outline_along(star(3, 1, 1), up).roundness(), pi / (2 * std::sqrt(3.0)), 1e-9);    // hexagon
+  EXPECT_NEAR(outline_along(testing::icosphere(4, 1), {1, 2, 3}).roundness(), 1, 1e-3);
+  EXPECT_NEAR(outline_along(cylinder_mesh(2, 1, 400), up).roundness(), 1, 1e-4);
+  // A star with five points, which is not convex: ten triangles, ten sides.
+  const double area = 5 * 0.4 * std::sin(pi / 5), side = std::sqrt(1 + 0.16 - 0.8 * std::cos(pi / 5));
+  const Outline outline = outline_along(star(5, 1, 0.4), up);
+  EXPECT_NEAR(outline.area, area, 1e-9);
+  EXPECT_NEAR(outline.perimeter, 10 * side, 1e-9);
+}
+
+TEST(roundness, does_not_depend_on_where_and_how_large_the_stone_is) {
+  Rng rng(3, "turn");
+  const Quat turn = rng.rotation();
+  const double one = outline_along(star(5, 1, 0.6), Vec3::UnitZ()).roundness();
+  TriangleMesh moved = star(5, 0.05, 0.03);
+  moved = testing::turned(moved, turn, {7, -3, 2});
+  EXPECT_NEAR(outline_along(moved, turn * Vec3::UnitZ()).roundness(), one, 1e-6);
+}
+
+TEST(roundness, of_a_stone_is_the_mean_of_three_views) {
+  const double square = std::numbers::pi / 4, oblong = 4 * std::numbers::pi * 2 / 36;
+  EXPECT_NEAR(measure_shape(testing::box_mesh(Vec3::Ones())).roundness, square, 1e-6);
+  EXPECT_NEAR(measure_shape(testing::box_mesh({1, 2, 1})).roundness, (square + 2 * oblong) / 3, 1e-6);
+  EXPECT_NEAR(measure_shape(testing::icosphere(4, 1)).roundness, 1, 1e-3);
 }
 
 TEST(shape, flat_mesh_has_no_hull) {

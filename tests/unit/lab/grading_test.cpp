@@ -71,5 +71,20 @@ TEST(Grading, ScaleGivesTheSizeAsItIsMeasured) {
   EXPECT_NEAR(scale_to_size(grading, Space{}, stone, 0.04), 2.5, 1e-14);
 }
 
+TEST(Grading, ScaledSievesGiveTheSameStonesScaled) {
+  GradingInput grading;
+  const Space space;
+  const double volume = 0.01;
+  Rng rng(4, "sizes"), again(4, "sizes");
+  const std::vector<double> sizes = draw_sizes(grading, space, volume, rng);
+  grading.scale = 3;
+  const std::vector<double> scaled = draw_sizes(grading, space, 27 * volume, again);
+  ASSERT_EQ(scaled.size(), sizes.size());
+  for (std::size_t k = 0; k < sizes.size(); ++k) EXPECT_NEAR(scaled[k] / sizes[k], 3, 1e-12);
+  EXPECT_EQ(smallest_size(grading), 3 * grading.sieves[0]);
+  const std::vector<double> shares = passing(grading, space, scaled);
+  for (std::size_t k = 0; k < shares.size(); ++k) EXPECT_NEAR(shares[k], grading.passing[k], 0.01);
+}
+
 }  // namespace
 }  // namespace trackbed

@@ -161,6 +161,17 @@ TEST(Measures, VolumeOfABodyBelowALevel) {
   EXPECT_NEAR(volume_below(box, turned, 3.0), 0.5 * 0.2 * 0.3 * 0.4, 1e-15);
 }
 
+TEST(Measures, TheStoneThatMovedMostIsFoundByItsId) {
+  Simulation sim = tower();
+  sim.places = places_of(sim.state);
+  EXPECT_EQ(value_of(sim, "stone_displacement_max"), 0);
+  sim.state.clumps.position[0] += Vec3(0.001, 0, 0);
+  sim.state.clumps.position[1] += Vec3(0, 0.003, 0.004);
+  EXPECT_NEAR(value_of(sim, "stone_displacement_max"), 0.005, 1e-15);
+  remove_clumps(sim.state, {1});
+  EXPECT_NEAR(value_of(sim, "stone_displacement_max"), 0.001, 1e-15);
+}
+
 TEST(Measures, WallsTellHowFarTheyHaveGone) {
   Simulation sim = tower();
   sim.state.walls[0].pose.position = {0.01, 0, -0.002};
