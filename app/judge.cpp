@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "command_line.h"
 #include "commands.h"
@@ -14,12 +15,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string verdict_on(const Judged& run) {
+  const std::string verdict = run.refusal.empty() ? "accepted" : "refused: " + run.refusal;
+  if (!run.is_reference) return verdict;
+  return std::isnan(run.likeness.distance) ? "the only reference"
+                                           : "a reference, beside the others: " + verdict;
+}
+
 void print_judgement(const std::vector<Judged>& runs) {
   fmt::print("{:32} {:>9} {:>9} {:>9}\n", "", "distance", "place", "share");
   for (const Judged& run : runs)
-    fmt::print("{:32} {:9.3f} {:9.3f} {:9.3f}  {}{}\n", run.name, run.likeness.distance, run.likeness.place,
-               run.likeness.share, run.is_reference ? "a reference beside the others, would be " : "",
-               run.refusal.empty() ? "accepted" : "refused: " + run.refusal);
+    fmt::print("{:32} {:9.3f} {:9.3f} {:9.3f}  {}\n", run.name, run.likeness.distance, run.likeness.place,
+               run.likeness.share, verdict_on(run));
   const auto members = std::ranges::count(runs, false, &Judged::is_reference);
   const auto accepted =
       std::ranges::count_if(runs, [](const Judged& run) { return !run.is_reference && run.refusal.empty(); });

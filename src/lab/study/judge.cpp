@@ -203,7 +203,9 @@ std::vector<Judged> judge(const JudgeInput& rule, const std::vector<fs::path>& m
     run.likeness = compare(run.bearing, bearings);
     run.refusal = refusal(run.likeness, rule);
   }
-  for (std::size_t k = 0; k < others.size() && others.size() > 1; ++k) {
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    others[k].likeness = {NAN, NAN, NAN};
+    if (others.size() == 1) break;
     std::vector<Bearing> rest = bearings;
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
     others[k].likeness = compare(others[k].bearing, rest);
