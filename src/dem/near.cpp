@@ -1,0 +1,133 @@
+#include "dem/near.h"
+
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+namespace trackbed {
+namespace {
+
+using Index = std::size_t;
+
+/// Stones of like sizes sorted into cubic cells.
+struct Grid {
+  double largest;  // of their bounding radii [m]
+  Vec3 origin;
+  double cell;
+  std::array<int, 3> n;
+  std::vector<int> first, members;
+
+  std::array<int, 3> place(const Vec3& p) const {
+    std::array<int, 3> at;
+    for (int a = 0; a < 3; ++a) {
+      const Index k = static_cast<Index>(a);
+      at[k] = static_cast<int>(std::clamp((p[a] - origin[a]) / cell, 0.0, n[k] - 1.0));
+    }
+    return at;
+  }
+  int number(int x, int y, int z) const { return (z * n[1] + y) * n[0] + x; }
+};
+
+/// A grid of some of the stones, with cells of their largest bounding diameter plus margin.
+Grid make_grid(const Clumps& clumps, const std::vector<int>& stones, const Workspace& work) {
+  Grid grid{0, Vec3::Zero(), 0, {}, {}, {}};
+  Eigen::AlignedBox3d box;
+  for (int c : stones) {
+    box.extend(clumps.position[static_cast<Index>(c)]);
+    grid.largest = std::max(grid.largest, work.bound[static_cast<Index>(c)]);
+  }
+  grid.origin = box.min();
+  grid.cell = 2.0 * grid.largest + work.margin;
+  // Few stones in a wide space: larger cells, rather than more of them than memory holds.
+  const double most = 8.0 * static_cast<double>(stones.size()) + 64.0;
+  for (;;) {
+    const Vec3 cells = (box.sizes() / grid.cell).array().floor() + 1.0;
+    if (cells.prod() <= most) {
+      for (int a = 0; a < 3; ++a) grid.n[static_cast<Index>(a)] = static_cast<int>(cells[a]);
+      break;
+    }
+    grid.cell *= 1.5;
+  }
+  std::vector<int> cell_of(stones.size());
+  grid.first.assign(static_cast<Index>(grid.n[0] * grid.n[1] * grid.n[2]) + 1, 0);
+  for (Index k = 0; k < stones.size(); ++k) {
+    const auto at = grid.place(clumps.position[static_cast<Index>(stones[k])]);
+    cell_of[k] = grid.number(at[0], at[1], at[2]);
+    ++grid.first[static_cast<Index>(cell_of[k]) + 1];
+  }
+  std::partial_sum(grid.first.begin(), grid.first.end(), grid.first.begin());
+  grid.members.resize(stones.size());
+  std::vector<int> next(grid.first.begin(), grid.first.end() - 1);
+  for (Index k = 0; k < stones.size(); ++k)
+    grid.members[static_cast<Index>(next[static_cast<Index>(cell_of[k])]++)] = stones[k];
+  return grid;
+}
+
+/// Stones of very different sizes lie in grids of their own: within one, the largest is at most four times as
+/// large as the smallest, but in the last, which has all that are smaller still.
+std::vector<Grid> make_grids(const Clumps& clumps, const Workspace& work) {
+  constexpr int most = 6;
+  constexpr double ratio = 4;
+  const double largest = *std::max_element(work.bound.begin(), work.bound.end());
+  std::array<std::vector<int>, most> levels;
+  for (int c = 0; c < clumps.size(); ++c) {
+    Index level = 0;
+    for (double bound = largest / ratio; work.bound[static_cast<Index>(c)] < bound && level + 1 < most;
+         bound /= ratio)
+      ++level;
+    levels[level].push_back(c);
+  }
+  std::vector<Grid> grids;
+  for (const std::vector<int>& stones : levels)
+    if (!stones.empty()) grids.push_back(make_grid(clumps, stones, work));
+  return grids;
+}
+
+bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
+  if (shape.is_plane) return centre.z() < radius;
+  return any_near_facet(shape, centre, radius, [](int, double) { return true; });
+}
+
+}  // namespace
+
+std::vector<std::pair<int, int>> near_clumps(const Clumps& clumps, const Workspace& work) {
+  std::vector<std::pair<int, int>> pairs;
+  if (clumps.size() < 2) return pairs;
+  const std::vector<Grid> grids = make_grids(clumps, work);
+  std::vector<int> others;
+  for (int i = 0; i < clumps.size(); ++i) {
+    const Vec3& x = clumps.position[static_cast<Index>(i)];
+    const double bound = work.bound[static_cast<Index>(i)];
+    others.clear();
+    for (const Grid& grid : grids) {
+      const Vec3 reach = Vec3::Constant(bound + grid.largest + work.margin);
+      const auto low = grid.place(x - reach), high = grid.place(x + reach);
+      for (int z = low[2]; z <= high[2]; ++z)
+        for (int y = low[1]; y <= high[1]; ++y) {
+          const int last = grid.first[static_cast<Index>(grid.number(high[0], y, z)) + 1];
+          for (int k = grid.first[static_cast<Index>(grid.number(low[0], y, z))]; k < last; ++k) {
+            const int j = grid.members[static_cast<Index>(k)];
+            if (j <= i) continue;
+            const double near = bound + work.bound[static_cast<Index>(j)] + work.margin;
+            if ((clumps.position[static_cast<Index>(j)] - x).squaredNorm() < near * near) others.push_back(j);
+          }
+        }
+    }
+    std::sort(others.begin(), others.end());
+    for (int j : others) pairs.emplace_back(i, j);
+  }
+  return pairs;
+}
+
+std::vector<std::pair<int, int>> near_walls(const Model& model, const State& state, const Workspace& work) {
+  std::vector<std::pair<int, int>> pairs;
+  for (Index w = 0; w < model.walls.size(); ++w)
+    for (int c = 0; state.walls[w].present && c < state.clumps.size(); ++c) {
+      const Vec3 centre = state.walls[w].pose.to_body(state.clumps.position[static_cast<Index>(c)]);
+      if (is_near(model.walls[w].shape, centre, work.bound[static_cast<Index>(c)] + work.margin))
+        pairs.emplace_back(static_cast<int>(w), c);
+    }
+  return pairs;
+}
+
+}  // namespace trackbed
