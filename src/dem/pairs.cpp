@@ -1,4 +1,5 @@
-// Level one of the search: pairs of stones, and of stones and walls, that lie near each other, kept in blocks.
+// Level one of the search: pairs of stones, and of stones and walls, that lie near each other, kept in
+// blocks.
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -59,8 +59,8 @@ Likeness compare(const Bearing& member, const std::vector<Bearing>& references);
 /// Why the rule refuses it; empty when it is accepted.
 std::string refusal(const Likeness& likeness, const JudgeInput& rule);
 
-/// A run that was compared with the references; a reference is compared with the others, and one that is alone
-/// with nothing: its likeness is not a number.
+/// A run that was compared with the references; a reference is compared with the others, and one that is
+/// alone with nothing: its likeness is not a number.
 struct Judged {
   std::string name, group;  // "wedge-seed-3" is of the group "wedge"
   bool is_reference = false;
