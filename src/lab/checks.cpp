@@ -10,7 +10,7 @@
 #include "dem/step.h"
 #include "io/nearest.h"
 #include "lab/grading.h"
-#include "lab/recorder.h"
+#include "lab/measure.h"
 
 namespace trackbed {
 namespace {

@@ -6,9 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "dem/threads.h"
 #include "io/csv.h"
-#include "io/echo.h"
 #include "io/files.h"
 #include "lab/track/sleeper_peaks.h"
 #include "lab/track/track_run.h"
@@ -64,16 +62,7 @@ class Bed {
              const fs::path& out) const {
     RunOptions options = options_;
     options.out = out;
-    Summary summary;
-    summary.title = bed.title;
-    summary.seed = bed.seed;
-    summary.threads = use_threads(options.threads);
-    summary.input = echo(bed);
-    summary.force_limits = bed.record.force_bins;
-    make_folder(out);
-    Recorder recorder(sim, bed.record, out);
-    run_stages(sim, stages, recorder, options, summary);
-    write_summary(summary, out / "summary.json");
+    run_recorded(sim, stages, bed, options);
   }
 
   PressHistory history(const fs::path& series) const {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,6 +23,13 @@ struct Measure {
 
 /// All measures of a simulation: the general ones, and those of each wall and body ("sleeper.force_z").
 std::vector<Measure> measures_of(const Simulation& sim);
+
+/// Those of them with these names, in this order. Throws InputError for a name that is no measure, with the
+/// nearest.
+std::vector<Measure> measures_called(const Simulation& sim, const std::vector<std::string>& names);
+
+/// What the user may have meant by a name; nothing when it is a measure.
+std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name);
 
 /// Counts of contact forces between the limits [N]: below the first, between, above the last; contacts
 /// between pebbles, stone-stone and stone-wall.

@@ -12,7 +12,6 @@
 
 #include "base/error.h"
 #include "io/files.h"
-#include "io/nearest.h"
 #include "lab/picture_of_bed.h"
 
 namespace trackbed {
@@ -43,25 +42,12 @@ double next_after(double time, double every) {
 
 }  // namespace
 
-std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name) {
-  std::vector<std::string> known;
-  for (const Measure& m : measures_of(sim)) known.push_back(m.name);
-  if (std::ranges::find(known, name) != known.end()) return std::nullopt;
-  known = by_distance(name, known);
-  known.resize(std::min<std::size_t>(known.size(), 6));
-  return known_words(name, known) + "; trackbed describe measures lists all";
-}
-
 std::vector<Measure> series_measures(const Simulation& sim, const std::vector<std::string>& further) {
   const std::vector<Measure> all = measures_of(sim);
   std::vector<Measure> chosen;
   std::ranges::copy_if(all, std::back_inserter(chosen), is_column_by_default, &Measure::name);
-  for (const std::string& name : further) {
-    if (const auto hint = hint_for_measure(sim, name))
-      throw InputError(fmt::format("there is no measure called {}\n  hint: {}", name, *hint));
-    if (std::ranges::find(chosen, name, &Measure::name) == chosen.end())
-      chosen.push_back(*std::ranges::find(all, name, &Measure::name));
-  }
+  for (const Measure& m : measures_called(sim, further))
+    if (std::ranges::find(chosen, m.name, &Measure::name) == chosen.end()) chosen.push_back(m);
   return chosen;
 }
 

@@ -28,9 +28,6 @@ namespace trackbed {
 /// and those of `further` by name. Throws InputError for a name that is no measure, with the nearest.
 std::vector<Measure> series_measures(const Simulation& sim, const std::vector<std::string>& further);
 
-/// What the user may have meant by a name; nothing when it is a measure.
-std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name);
-
 /// Stage names as parts of file names: letters, digits, point and dash stay.
 std::string file_name_of(const std::string& stage);
 

@@ -75,24 +75,28 @@ Simulation prepare_run(const Document& document, const CaseInput& experiment) {
   return sim;
 }
 
-Summary run(const Document& document, const CaseInput& experiment, const RunOptions& options) {
-  const Stopwatch watch;
+Summary run_recorded(Simulation& sim, std::vector<NamedStage>& stages, const CaseInput& experiment,
+                     const RunOptions& options, double setting_up) {
   Summary summary;
   summary.title = experiment.title;
   summary.seed = experiment.seed;
   summary.threads = use_threads(options.threads);
   summary.input = echo(experiment);
   summary.force_limits = experiment.record.force_bins;
-
-  Simulation sim = prepare_run(document, experiment);
-  std::vector<NamedStage> stages = stages_of(experiment);
   make_folder(options.out);
   Recorder recorder(sim, experiment.record, options.out);
-  const double setting_up = watch.seconds();
   run_stages(sim, stages, recorder, options, summary);
   summary.wall += setting_up;
   write_summary(summary, options.out / "summary.json");
   return summary;
+}
+
+Summary run(const Document& document, const CaseInput& experiment, const RunOptions& options) {
+  const Stopwatch watch;
+  use_threads(options.threads);
+  Simulation sim = prepare_run(document, experiment);
+  std::vector<NamedStage> stages = stages_of(experiment);
+  return run_recorded(sim, stages, experiment, options, watch.seconds());
 }
 
 }  // namespace trackbed

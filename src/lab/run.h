@@ -49,6 +49,12 @@ std::vector<Result> carry_out(Simulation& sim, Stage& stage, const std::function
 void run_stages(Simulation& sim, std::vector<NamedStage>& stages, Recorder& recorder,
                 const RunOptions& options, Summary& summary);
 
+/// Runs these stages of a case with the simulation and leaves in options.out what recorder.h lists, and
+/// summary.json, which is returned. `setting_up`: wall time before, which counts as the run's [s]. Throws as
+/// run_stages does.
+Summary run_recorded(Simulation& sim, std::vector<NamedStage>& stages, const CaseInput& experiment,
+                     const RunOptions& options, double setting_up = 0);
+
 /// The stages of a case.
 std::vector<NamedStage> stages_of(const CaseInput& experiment);
 

@@ -1,9 +1,13 @@
 // The table of measures: one row each.
 #include <fmt/format.h>
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
+#include "base/error.h"
+#include "io/nearest.h"
 #include "lab/measures/measures.h"
 
 namespace trackbed {
@@ -120,6 +124,29 @@ std::vector<Measure> measures_of(const Simulation& sim) {
   add(energy_measures());
   for (std::size_t w = 0; w < sim.model.walls.size(); ++w) add(wall_measures(sim.model.walls[w], w));
   return all;
+}
+
+std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name) {
+  std::vector<std::string> known;
+  for (const Measure& m : measures_of(sim)) known.push_back(m.name);
+  if (std::ranges::find(known, name) != known.end()) return std::nullopt;
+  known = by_distance(name, known);
+  known.resize(std::min<std::size_t>(known.size(), 6));
+  return known_words(name, known) + "; trackbed describe measures lists all";
+}
+
+std::vector<Measure> measures_called(const Simulation& sim, const std::vector<std::string>& names) {
+  if (names.empty()) return {};
+  const std::vector<Measure> all = measures_of(sim);
+  std::vector<Measure> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::ranges::find(all, name, &Measure::name);
+    if (found == all.end())
+      throw InputError(
+          fmt::format("there is no measure called {}\n  hint: {}", name, *hint_for_measure(sim, name)));
+    chosen.push_back(*found);
+  }
+  return chosen;
 }
 
 }  // namespace trackbed

@@ -10,16 +10,6 @@
 #include "lab/track/sleeper_peaks.h"
 
 namespace trackbed {
-namespace {
-
-const Measure& find(const std::vector<Measure>& all, const std::string& name) {
-  const auto found = std::ranges::find(all, name, &Measure::name);
-  if (found == all.end()) throw RunError(fmt::format("there is no measure called {}", name));
-  return *found;
-}
-
-}  // namespace
-
 void declare(Fields& f, LevelsInput& in) {
   f.quantities(
       "levels", in.levels, Dimension::force, {.above = 0},
@@ -65,8 +55,7 @@ void Levels::open(const Simulation& sim) {
   table_.columns.insert(
       table_.columns.end(),
       {{"force", Dimension::force}, {"distance", Dimension::length}, {"time", Dimension::time}});
-  const std::vector<Measure> all = measures_of(sim);
-  for (const std::string& name : measures_) table_.columns.push_back({name, find(all, name).dimension});
+  for (const Measure& m : measures_called(sim, measures_)) table_.columns.push_back({m.name, m.dimension});
 }
 
 void Levels::look(const Simulation& sim, double force, double distance) {
@@ -75,8 +64,7 @@ void Levels::look(const Simulation& sim, double force, double distance) {
     std::vector<double> row{level.force};
     if (of_sleepers_) row.push_back(level.sleeper);
     row.insert(row.end(), {force, distance, sim.state.time});
-    const std::vector<Measure> all = measures_of(sim);
-    for (const std::string& name : measures_) row.push_back(find(all, name).value(sim));
+    for (const Measure& m : measures_called(sim, measures_)) row.push_back(m.value(sim));
     table_.rows.push_back(std::move(row));
   }
 }

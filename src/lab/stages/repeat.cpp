@@ -86,9 +86,8 @@ class Repeat : public Stage {
 
   void close_stage(Simulation& sim) {
     const std::string& name = in_.stages[at_].input->name;
-    for (const Measure& m : measures_of(sim))
-      if (std::ranges::find(in_.measures, m.name) != in_.measures.end())
-        add({name + "." + m.name, m.value(sim), m.dimension});
+    for (const Measure& m : measures_called(sim, in_.measures))
+      add({name + "." + m.name, m.value(sim), m.dimension});
     for (const Result& r : stage_->close(sim)) {
       if (r.name == "added") added_ += r.value;
       if (r.name == "removed") removed_ += r.value;
