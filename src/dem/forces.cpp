@@ -110,6 +110,20 @@ void end_contact(const ContactProperties& p, const Places& at, const Motions& m,
   open_contact(p, k, memory, losses);
 }
 
+/// Ends the contacts in the lanes of `opened`.
+void end_contacts(const Batch& f, unsigned opened, const ContactProperties& p, const Places& at,
+                  const Motions& m, double dt, Workspace& work) {
+  for (int lane = 0; lane < Lanes::size; ++lane) {
+    if (!(opened >> lane & 1u)) continue;
+    const Index k = static_cast<Index>(lane);
+    Losses losses;
+    end_contact(p, at, m, lane, dt, *f.memory[k], losses);
+    const Index i = static_cast<Index>(f.candidate[k]->i);
+    work.sums[i].moment.pack[3] += losses.friction;
+    work.rare_losses[i].rolling += losses.rolling;
+  }
+}
+
 /// Adds the responses in the lanes of `touching` to the sums of their stones.
 template <class Law>
 void hand_out(const Batch& f, unsigned touching, const Vec3Of<Lanes>& shift, const Response& r,
@@ -135,39 +149,43 @@ void hand_out(const Batch& f, unsigned touching, const Vec3Of<Lanes>& shift, con
   }
 }
 
-/// Lets the candidates of a batch respond, those in the lanes of `wanted`; returns how many touch.
-template <class Law>
-int respond(const Batch& f, unsigned wanted, const ContactProperties& p, double dt, Workspace& work) {
-  const Places at = places_of(work, f);
-  const unsigned touching = wanted & bits(at.distance2 < at.reach * at.reach);
-  unsigned opened = 0;
-  for (Index k = 0; k < Lanes::size; ++k) opened |= static_cast<unsigned>(f.memory[k]->touches()) << k;
-  opened &= wanted & ~touching;
-  if ((touching | opened) == 0) return 0;
-  const Motions m = motions_of(work, f, at.shift);
-  for (int lane = 0; opened != 0 && lane < Lanes::size; ++lane) {
-    if (!(opened >> lane & 1u)) continue;
-    const Index k = static_cast<Index>(lane);
-    Losses losses;
-    end_contact(p, at, m, lane, dt, *f.memory[k], losses);
-    const Index i = static_cast<Index>(f.candidate[k]->i);
-    work.sums[i].moment.pack[3] += losses.friction;
-    work.rare_losses[i].rolling += losses.rolling;
-  }
-  if (touching == 0) return 0;
-
+ContactKinematicsOf<Lanes> kinematics_of(const Places& at, const Motions& m, double dt,
+                                         Vec3Of<Lanes>& lever) {
   ContactKinematicsOf<Lanes> k;
   const Lanes distance = sqrt(at.distance2);
   k.dt = dt;
   k.overlap = at.reach - distance;
   k.normal = (Lanes(1.0) / distance) * at.between;
-  if constexpr (Law::rolls) k.radius = at.radius_a * (at.reach - at.radius_a) / at.reach;
-  const Vec3Of<Lanes> lever = at.centre + (at.radius_a - Lanes(0.5) * k.overlap) * k.normal;
+  lever = at.centre + (at.radius_a - Lanes(0.5) * k.overlap) * k.normal;
   k.spin = m.spin;
   k.velocity = m.velocity + m.spin.cross(lever);
   k.mean_twist = m.mean_spin.dot(k.normal);
   k.reduced_mass = m.reduced_mass;
-  hand_out<Law>(f, touching, at.shift, respond_with<Law>(k, p, lever, f.memory, touching), p, work);
+  return k;
+}
+
+/// Lets the candidates in the lanes of `present` act on their stones, in their order; returns how many touch.
+int act(const Model& model, const Batch& f, unsigned present, double dt, Workspace& work) {
+  const Places at = places_of(work, f);
+  const unsigned touching = present & bits(at.distance2 < at.reach * at.reach);
+  unsigned opened = 0;
+  for (Index k = 0; k < Lanes::size; ++k) opened |= static_cast<unsigned>(f.memory[k]->touches()) << k;
+  opened &= present & ~touching;
+  if ((touching | opened) == 0) return 0;
+  const Motions m = motions_of(work, f, at.shift);
+  Vec3Of<Lanes> lever;
+  ContactKinematicsOf<Lanes> kinematics = kinematics_of(at, m, dt, lever);
+  const auto properties_and_end = [&](Index k) {
+    return 2 * f.candidate[k]->properties + static_cast<int>(opened >> k & 1u);
+  };
+  by_runs(touching | opened, properties_and_end, [&](int key, unsigned run) {
+    const ContactProperties& p = model.pairs[key / 2];
+    if (key % 2 != 0) return end_contacts(f, run, p, at, m, dt, work);
+    with_law(p.law, [&]<class Law>() {
+      if constexpr (Law::rolls) kinematics.radius = at.radius_a * (at.reach - at.radius_a) / at.reach;
+      hand_out<Law>(f, run, at.shift, respond_with<Law>(kinematics, p, lever, f.memory, run), p, work);
+    });
+  });
   return __builtin_popcount(touching);
 }
 
@@ -196,12 +214,7 @@ void prefetch(const PairBlock& block, const PairGeometry& geometry) {
       f.candidate[k] = &geometry.candidates[at];
       f.memory[k] = &block.memory[at];
     }
-    by_properties(
-        lanes_of(n - first), [&](Index k) { return f.candidate[k]->properties; },
-        [&](int properties, unsigned wanted) {
-          const ContactProperties& p = model.pairs[properties];
-          with_law(p.law, [&]<class Law>() { touching += respond<Law>(f, wanted, p, dt, work); });
-        });
+    touching += act(model, f, lanes_of(n - first), dt, work);
   }
   return touching;
 }

@@ -129,7 +129,7 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   std::vector<PairBlock> blocks;
   std::vector<PairGeometry> geometry;
   const bool with_search = work.pair_geometry.size() == state.pair_blocks.size();
-  work.patch_size = std::clamp(state.clumps.size() / 24, 16, 512);
+  work.patch_size = std::clamp(state.clumps.size() / 24, 16, 1024);
   const auto begins_block = [&](int i) {
     if (blocks.empty()) return true;
     const int last = blocks.back().pairs.back().i;

@@ -19,17 +19,19 @@ Vec3Of<Lanes> gather(const Get& get, Lanes& fourth) {
   return {c[0], c[1], c[2]};
 }
 
-/// One law and one set of properties at a time: visits the lanes of `wanted` that have the same number of
-/// properties together; almost always all.
-template <class PropertiesOf, class Visit>
-void by_properties(unsigned wanted, const PropertiesOf& properties_of, const Visit& visit) {
+/// Visits the lanes of `wanted` by runs of those that have the same key, in ascending order; almost always
+/// all in one run. So sums come in the order of the lanes, whatever lies between them.
+template <class KeyOf, class Visit>
+void by_runs(unsigned wanted, const KeyOf& key_of, const Visit& visit) {
   while (wanted != 0) {
-    const int properties = properties_of(static_cast<std::size_t>(__builtin_ctz(wanted)));
-    unsigned alike = 0;
-    for (std::size_t k = 0; k < Lanes::size; ++k)
-      alike |= static_cast<unsigned>(properties_of(k) == properties) << k;
-    visit(properties, wanted & alike);
-    wanted &= ~alike;
+    const auto key = key_of(static_cast<std::size_t>(__builtin_ctz(wanted)));
+    unsigned run = 0;
+    for (unsigned left = wanted; left != 0; left &= left - 1) {
+      if (key_of(static_cast<std::size_t>(__builtin_ctz(left))) != key) break;
+      run |= left & -left;
+    }
+    visit(key, run);
+    wanted &= ~run;
   }
 }
 

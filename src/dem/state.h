@@ -96,7 +96,7 @@ struct ClumpPair {
 /// Candidates out of touch have an untouched memory and mean nothing: which they are depends on when a search
 /// ran.
 struct PairBlock {
-  static constexpr int full = 24;  // no further clump's pairs are added to as many
+  static constexpr int full = 96;  // no further clump's pairs are added to as many
   std::vector<ClumpPair> pairs;
   std::vector<PebblePair> keys;
   std::vector<ContactMemory> memory;

@@ -198,7 +198,7 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
   for (Index first = 0; first < n; first += Lanes::size) {
     Batch f;
     for (Index k = 0; k < Lanes::size; ++k) f[k] = &s.touches[std::min(first + k, n - 1)];
-    by_properties(
+    by_runs(
         lanes_of(n - first), [&](Index k) { return s.motions[static_cast<Index>(f[k]->pair)].properties; },
         [&](int properties, unsigned wanted) {
           const ContactProperties& p = model.pairs[properties];

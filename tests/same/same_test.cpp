@@ -13,7 +13,7 @@ namespace {
 
 using scenes::Setting;
 
-/// Clumps of 12 pebbles, with inertia of a block, that fall into a box of planes.
+/// Clumps of 12 pebbles, with inertia of a block, of two materials by turns, that fall into a box of planes.
 Simulation falling_stones(int n) {
   Setting a;
   a.friction = 0.5;
@@ -23,6 +23,8 @@ Simulation falling_stones(int n) {
   a.damping = 0.2;
   a.gravity = {0, 0, -50};  // so that they are down soon
   Simulation sim = scenes::make_scene(a);
+  sim.model.materials.push_back({"slag", 3e6, 2.5e6, 0.3, 0.2, a.density});
+  sim.model.pairs = PairTable(sim.model.materials, a.law, a.dashpot);
   Rng rng(7, "same");
   std::vector<Pebble> pebbles;
   for (int k = 0; k < 12; ++k)
@@ -33,7 +35,7 @@ Simulation falling_stones(int n) {
     scenes::add_plane(sim, -0.11 * side, side);
   for (int k = 0; k < n; ++k) {
     const Vec3 x(-0.08 + 0.053 * (k % 4), -0.08 + 0.053 * (k / 4 % 4), 0.03 + 0.05 * (k / 16));
-    const int c = add_clump(sim.model, sim.state, 1, rng.uniform(0.8, 1.1), 0, {x, rng.rotation()});
+    const int c = add_clump(sim.model, sim.state, 1, rng.uniform(0.8, 1.1), k % 2, {x, rng.rotation()});
     set_motion(sim.state, c, {0, 0, -3}, Vec3::Zero());
   }
   return sim;
@@ -86,6 +88,7 @@ TEST(same, stones_in_another_order_move_alike) {
   for (auto* values : {&c.position, &c.velocity, &c.angular_momentum, &c.angular_velocity, &c.inertia})
     std::reverse(values->begin(), values->end());
   std::reverse(c.orientation.begin(), c.orientation.end());
+  std::reverse(c.material.begin(), c.material.end());
   std::reverse(c.scale.begin(), c.scale.end());
   std::reverse(c.mass.begin(), c.mass.end());
   std::reverse(c.inertial_mass.begin(), c.inertial_mass.end());
