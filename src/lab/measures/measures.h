@@ -32,7 +32,7 @@ double median_size(
     const Simulation& sim);  ///< half of the mass is of stones with a smaller equal-volume diameter
 
 double bed_height(const Simulation& sim);  ///< bed_surface over the whole container [m]
-/// Of the container up to the bed's surface, bodies below it left out [m^3].
+/// Of the container up to the bed's surface, which follows slopes, bodies below it left out [m^3].
 double bed_volume(const Simulation& sim);
 /// Share of pores in the container up to the bed's surface, bodies below it left out; 1 without stones.
 double porosity(const Simulation& sim, double solid);  ///< with this volume of solids [m^3]

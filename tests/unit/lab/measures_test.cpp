@@ -134,6 +134,29 @@ TEST(Measures, BedOfBallsOnASquareGrid) {
   EXPECT_NEAR(value_of(sim, "d50"), 0.04, 1e-12);
 }
 
+TEST(Measures, PorosityOfASlopeCountsWhatLiesBelowItAlone) {
+  Simulation sim = scenes::make_scene(with_gravity());
+  sim.container = {Vec3(0, 0, 0), Vec3(0.8, 0.4, 0.3)};
+  const auto height_of = [](int layers) { return 0.04 * layers - 0.02 + std::sqrt(2e-4); };
+  double volume = 0;
+  for (int step = 0; step < 4; ++step) {  // 200 mm long each, one layer higher than the one before it
+    for (int k = 0; k < 5; ++k)
+      for (int j = 0; j < 10; ++j)
+        for (int i = 0; i <= step; ++i)
+          scenes::add_ball(sim, {0.2 * step + 0.02 + 0.04 * k, 0.02 + 0.04 * j, 0.02 + 0.04 * i});
+    volume += 0.2 * 0.4 * height_of(step + 1);
+  }
+  EXPECT_NEAR(porosity(sim, solid_volume(sim)), 1 - 500 * ball_volume / volume, 1e-12);
+  // A sleeper across the highest step, sunk into it to half of its height.
+  const Vec3 place(0.7, 0.2, height_of(4));
+  add_wall(
+      sim,
+      {make_mesh_wall("sleeper", box_mesh({0.1, 0.4, 0.05}, {-0.05, -0.2, -0.025})), 0, BodyProperties{}},
+      {place, Quat::Identity()});
+  volume -= 0.1 * 0.4 * 0.025;
+  EXPECT_NEAR(porosity(sim, solid_volume(sim)), 1 - 500 * ball_volume / volume, 1e-12);
+}
+
 TEST(Measures, ABodyInTheBedIsNeitherStoneNorPore) {
   Simulation sim = scenes::make_scene(with_gravity());
   sim.container = {Vec3(0, 0, 0), Vec3(0.4, 0.4, 0.3)};
