@@ -27,7 +27,7 @@ constexpr std::array commands = {
     Command{"judge", trackbed::judge_command,
             "accept or refuse runs by a rule, beside runs of another model"},
     Command{"couple", trackbed::couple_command, "couple a track with the bed under its sleepers"},
-    Command{"check", trackbed::check_command, "check a case and say what it would do"},
+    Command{"check", trackbed::check_command, "check a case, study, rule or coupling and say what it would do"},
     Command{"describe", trackbed::describe_command, "say what may stand in a case"},
     Command{"bench", trackbed::bench_command, "time this machine on a bed"},
     Command{"stone", trackbed::stone_command, "check stone meshes and fill them with pebbles"},

@@ -239,27 +239,30 @@ std::vector<CouplingRound> couple(double tolerance, int rounds, double reach, co
                              rounds, worst, tolerance));
 }
 
+CoupledCases check_coupling(const Document& document, const CouplingInput& in) {
+  CoupledCases cases{Document(in.passage.file, in.passage.set), {}, {}};
+  if (!is_track_case(cases.track_document))
+    document.fail("passage.case", "this is no track case: it has no table [track]", "name a track case");
+  cases.track_document.read(cases.track);
+  check_track(cases.track_document, cases.track);
+  check_sleepers(document, in, cases.track.track);
+  bed_document(in.bed).read(cases.bed);
+  check_bed(document, in.bed, cases.bed);
+  return cases;
+}
+
 std::vector<CouplingRound> run_coupling(const Document& document, const CouplingInput& in,
                                         const RunOptions& options, const fs::path& keep,
                                         const std::function<void(const CouplingRound&)>& told) {
-  const Document track_document(in.passage.file, in.passage.set);
-  if (!is_track_case(track_document))
-    document.fail("passage.case", "this is no track case: it has no table [track]", "name a track case");
-  TrackCaseInput track;
-  track_document.read(track);
-  check_track(track_document, track);
-  check_sleepers(document, in, track.track);
-  CaseInput bed_case;
-  bed_document(in.bed).read(bed_case);
-  check_bed(document, in.bed, bed_case);
+  const CoupledCases cases = check_coupling(document, in);
   make_folder(options.out);
-  const Bed bed(in.bed, bed_case, options);
+  const Bed bed(in.bed, cases.bed, options);
 
   const auto place = [&](const char* what, int round, std::size_t range) {
     return options.out / fmt::format("{}-{}-{}", what, round, range);
   };
   const Passage passage = [&](const std::vector<PressHistory>& beds, int round) {
-    TrackCaseInput now = track;
+    TrackCaseInput now = cases.track;
     for (std::size_t range = 0; range < beds.size(); ++range) {
       const fs::path file = place("curve", round, range).string() + ".csv";
       write_history(beds[range], file);
@@ -267,7 +270,7 @@ std::vector<CouplingRound> run_coupling(const Document& document, const Coupling
     }
     RunOptions there = options;
     there.out = options.out / fmt::format("passage-{}", round);
-    run_track(track_document, now, there, keep);
+    run_track(cases.track_document, now, there, keep);
     std::vector<std::vector<double>> peaks;
     for (const SleeperRange& range : in.sleepers) {
       const std::vector<int> numbers = numbers_of(range);

@@ -42,6 +42,16 @@ struct CouplingInput {
 
 void declare(Fields& f, CouplingInput& in);
 
+/// What a coupling joins.
+struct CoupledCases {
+  Document track_document;
+  TrackCaseInput track;
+  CaseInput bed;
+};
+
+/// Reads both cases. Throws InputError at the key of the coupling, or of one of the cases, that is wrong.
+CoupledCases check_coupling(const Document& document, const CouplingInput& in);
+
 /// One bed in one round.
 struct CouplingRound {
   int round = 1;
