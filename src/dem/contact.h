@@ -3,6 +3,9 @@
 // (double) or for several at once (Lanes).
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+
 #include "base/lanes.h"
 #include "base/vec.h"
 
@@ -12,10 +15,11 @@ namespace trackbed {
 /// row of four numbers.
 template <class Real>
 struct ContactMemoryOf {
-  alignas(32) Vec3Of<Real> normal = Vec3Of<Real>::Zero();
-  Real overlap = 0.0;                                       // [m]
-  alignas(32) Vec3Of<Real> shear = Vec3Of<Real>::Zero();    // shear force on body 2 [N]
-  alignas(32) Vec3Of<Real> rolling = Vec3Of<Real>::Zero();  // rolling moment on body 2 [N m]
+  static constexpr std::size_t row = std::max<std::size_t>(32, alignof(Vec3Of<Real>));
+  alignas(row) Vec3Of<Real> normal = Vec3Of<Real>::Zero();
+  Real overlap = 0.0;                                        // [m]
+  alignas(row) Vec3Of<Real> shear = Vec3Of<Real>::Zero();    // shear force on body 2 [N]
+  alignas(row) Vec3Of<Real> rolling = Vec3Of<Real>::Zero();  // rolling moment on body 2 [N m]
 
   auto touches() const { return overlap > Real(0.0); }
   template <class A>
