@@ -46,7 +46,7 @@ done
 
 [[ $(id -u) == 0 ]] || fail "making a machine in a folder needs root"
 command -v debootstrap >/dev/null || fail "debootstrap is missing: apt-get install debootstrap"
-git -C "$from" rev-parse HEAD >/dev/null || fail "$from is not a git clone"
+commit=$(git -C "$from" rev-parse HEAD 2>/dev/null) || fail "$from is not a git clone" # others may follow meanwhile
 [[ -n $machine ]] || machine=$(mktemp -d "${TMPDIR:-/tmp}/fresh-machine.XXXXXX")
 mkdir -p "$machine" "$logs"
 machine=$(cd "$machine" && pwd -P)
@@ -100,7 +100,7 @@ copy_sources() {
       while IFS= read -r -d '' file; do [[ ! -e $file ]] || printf '%s\0' "$file"; done |
       tar --null --files-from=- -cf -)
   else
-    git -C "$from" archive HEAD
+    git -C "$from" archive "$commit"
   fi | tar -xf - -C "$machine$home"
 }
 
@@ -149,6 +149,6 @@ else
 fi
 
 echo
-echo "A bare Debian 12 machine, $(nproc) cores; $(git -C "$from" log -1 --format='%h %s')$( ((work_tree)) && echo ', as it lies')"
+echo "A bare Debian 12 machine, $(nproc) cores; $(git -C "$from" log -1 --format='%h %s' "$commit")$( ((work_tree)) && echo ', as it lies')"
 printf '  %s\n' "${table[@]}"
 exit $failed
