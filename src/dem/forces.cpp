@@ -149,6 +149,8 @@ void hand_out(const Batch& f, unsigned touching, const Vec3Of<Lanes>& shift, con
   }
 }
 
+/// Without the radius, which laws that roll alone need; `lever` leads from the centre of mass of i to the
+/// contact.
 ContactKinematicsOf<Lanes> kinematics_of(const Places& at, const Motions& m, double dt,
                                          Vec3Of<Lanes>& lever) {
   ContactKinematicsOf<Lanes> k;

@@ -77,23 +77,16 @@ bool ends_at_a_rim(const Simulation& sim, const Eigen::Vector2d& line) {
   });
 }
 
-Eigen::Vector2d middle_of(const Eigen::AlignedBox2d& where, int i, int j, int nx, int ny) {
-  return where.min() + where.sizes().cwiseProduct(Eigen::Vector2d((i + 0.5) / nx, (j + 0.5) / ny));
-}
-
 }  // namespace
-
-Eigen::Vector2d LocalHeights::line(int i, int j) const {
-  return middle_of(where_, i, j, nx_, ny_);
-}
 
 double LocalHeights::at(const Eigen::Vector2d& place) const {
   const auto number = [&](int axis, int n) {
-    const double size = where_.sizes()[axis];
+    const double size = lines_.where.sizes()[axis];
     if (size <= 0) return 0;
-    return std::clamp(static_cast<int>(std::floor((place[axis] - where_.min()[axis]) / size * n)), 0, n - 1);
+    const double share = (place[axis] - lines_.where.min()[axis]) / size;
+    return std::clamp(static_cast<int>(std::floor(share * n)), 0, n - 1);
   };
-  return heights_[static_cast<Index>(number(1, ny_) * nx_ + number(0, nx_))];
+  return heights_[lines_.index(number(0, lines_.nx), number(1, lines_.ny))];
 }
 
 double LocalHeights::mean() const {
@@ -107,33 +100,28 @@ double LocalHeights::highest() const {
 double LocalHeights::mean_over(const Eigen::AlignedBox2d& part) const {
   double sum = 0;
   int n = 0;
-  for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i)
-      if (part.contains(line(i, j))) {
-        sum += heights_[static_cast<Index>(j * nx_ + i)];
-        ++n;
-      }
+  lines_.for_each([&](int i, int j) {
+    if (!part.contains(lines_.line(i, j))) return;
+    sum += heights_[lines_.index(i, j)];
+    ++n;
+  });
   return n > 0 ? sum / n : at(part.center());
 }
 
 Surface::Surface(const Eigen::AlignedBox2d& where)
-    : where_(where), nx_(lines_along(where.sizes().x())), ny_(lines_along(where.sizes().y())) {
-  step_ = {where.sizes().x() / nx_, where.sizes().y() / ny_};
-  height_.assign(static_cast<Index>(nx_ * ny_), 0.0);
-  covered_.assign(height_.size(), false);
-  left_out_.assign(height_.size(), false);
-}
-
-Eigen::Vector2d Surface::line(int i, int j) const {
-  return middle_of(where_, i, j, nx_, ny_);
-}
+    : lines_{where, lines_along(where.sizes().x()), lines_along(where.sizes().y())},
+      height_(lines_.size(), 0.0),
+      covered_(lines_.size(), false),
+      left_out_(lines_.size(), false) {}
 
 template <class Visit>
 void Surface::for_lines(const Eigen::Array2d& low, const Eigen::Array2d& high, Visit&& visit) const {
-  const Eigen::Vector2d& from = where_.min();
-  const int i1 = first(high.x(), from.x(), step_.x(), nx_), j1 = first(high.y(), from.y(), step_.y(), ny_);
-  for (int j = first(low.y(), from.y(), step_.y(), ny_); j < j1; ++j)
-    for (int i = first(low.x(), from.x(), step_.x(), nx_); i < i1; ++i) visit(index(i, j), line(i, j));
+  const Eigen::Vector2d from = lines_.where.min(), size = lines_.where.sizes();
+  const auto first_x = [&](double x) { return first(x, from.x(), size.x() / lines_.nx, lines_.nx); };
+  const auto first_y = [&](double y) { return first(y, from.y(), size.y() / lines_.ny, lines_.ny); };
+  const int i1 = first_x(high.x()), j1 = first_y(high.y());
+  for (int j = first_y(low.y()); j < j1; ++j)
+    for (int i = first_x(low.x()); i < i1; ++i) visit(lines_.index(i, j), lines_.line(i, j));
 }
 
 void Surface::add_ball(const Vec3& centre, double radius) {
@@ -179,19 +167,19 @@ double Surface::mean() const {
 LocalHeights Surface::local() const {
   const std::vector<bool> tells = telling();
   const auto count = [](int lines) { return (lines + patch - 1) / patch; };
-  Patches patches{count(nx_), count(ny_), {}};
-  const auto of = [&](int i, int j) { return j * patches.ny / ny_ * patches.nx + i * patches.nx / nx_; };
+  Patches patches{count(lines_.nx), count(lines_.ny), {}};
+  const auto column = [&](int i) { return i * patches.nx / lines_.nx; };
+  const auto row = [&](int j) { return j * patches.ny / lines_.ny; };
   std::vector<std::vector<double>> heights(static_cast<Index>(patches.nx * patches.ny));
-  for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i)
-      if (tells[index(i, j)]) heights[static_cast<Index>(of(i, j))].push_back(height_[index(i, j)]);
+  lines_.for_each([&](int i, int j) {
+    const Index k = lines_.index(i, j);
+    if (tells[k]) heights[static_cast<Index>(row(j) * patches.nx + column(i))].push_back(height_[k]);
+  });
   for (std::vector<double>& h : heights)
     patches.value.push_back(h.empty() ? std::nullopt : std::optional(mean_of_lower(std::move(h))));
   std::vector<double> all;
-  for (int j = 0; j < ny_; ++j)
-    for (int i = 0; i < nx_; ++i)
-      all.push_back(patches.nearest(of(i, j) % patches.nx, of(i, j) / patches.nx));
-  return {where_, nx_, ny_, std::move(all)};
+  lines_.for_each([&](int i, int j) { all.push_back(patches.nearest(column(i), row(j))); });
+  return {lines_, std::move(all)};
 }
 
 Surface surface_of(const Simulation& sim, const Eigen::AlignedBox2d& where) {

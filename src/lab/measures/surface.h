@@ -9,11 +9,28 @@
 
 namespace trackbed {
 
-/// Where the bed ends on each line of a grid: the surface near it, what stands out left aside.
+/// Vertical lines through the middles of the cells of a rectangle [m].
+struct Lines {
+  Eigen::AlignedBox2d where;
+  int nx, ny;
+
+  std::size_t size() const { return static_cast<std::size_t>(nx * ny); }
+  std::size_t index(int i, int j) const { return static_cast<std::size_t>(j * nx + i); }
+  Eigen::Vector2d line(int i, int j) const {
+    return where.min() + where.sizes().cwiseProduct(Eigen::Vector2d((i + 0.5) / nx, (j + 0.5) / ny));
+  }
+  template <class Visit>
+  void for_each(Visit&& visit) const {
+    for (int j = 0; j < ny; ++j)
+      for (int i = 0; i < nx; ++i) visit(i, j);
+  }
+};
+
+/// Where the bed ends on each line: the surface near it, what stands out left aside.
 class LocalHeights {
  public:
-  LocalHeights(const Eigen::AlignedBox2d& where, int nx, int ny, std::vector<double> heights)
-      : where_(where), nx_(nx), ny_(ny), heights_(std::move(heights)) {}
+  LocalHeights(const Lines& lines, std::vector<double> heights)
+      : lines_(lines), heights_(std::move(heights)) {}
 
   double at(const Eigen::Vector2d& place) const;  ///< above z = 0, on the nearest line [m]
   double mean() const;                            ///< [m]
@@ -22,13 +39,11 @@ class LocalHeights {
   double mean_over(const Eigen::AlignedBox2d& part) const;
 
  private:
-  Eigen::Vector2d line(int i, int j) const;
-  Eigen::AlignedBox2d where_;
-  int nx_, ny_;
+  Lines lines_;
   std::vector<double> heights_;
 };
 
-/// Vertical lines through the middles of square cells; what they meet last, from below.
+/// What lines through square cells meet last, from below.
 class Surface {
  public:
   static constexpr double cell = 0.02;  // [m]
@@ -42,8 +57,9 @@ class Surface {
   /// Lines that are no part of the surface.
   template <class Ends>
   void leave_out(Ends&& is_left_out) {
-    for (int j = 0; j < ny_; ++j)
-      for (int i = 0; i < nx_; ++i) left_out_[index(i, j)] = is_left_out(line(i, j));
+    lines_.for_each([&](int i, int j) {
+      if (is_left_out(lines_.line(i, j))) left_out_[lines_.index(i, j)] = true;
+    });
   }
 
   /// Mean of the free lines, a tenth of the highest dropped; of those below bodies too when none is free [m].
@@ -53,16 +69,12 @@ class Surface {
   LocalHeights local() const;
 
  private:
-  std::size_t index(int i, int j) const { return static_cast<std::size_t>(j * nx_ + i); }
-  Eigen::Vector2d line(int i, int j) const;
   /// Lines that tell of the surface.
   std::vector<bool> telling() const;
   template <class Visit>
   void for_lines(const Eigen::Array2d& low, const Eigen::Array2d& high, Visit&& visit) const;
 
-  Eigen::AlignedBox2d where_;
-  Eigen::Vector2d step_;
-  int nx_, ny_;
+  Lines lines_;
   std::vector<double> height_;  // above z = 0 [m]
   std::vector<bool> covered_, left_out_;
 };
