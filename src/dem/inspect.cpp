@@ -70,7 +70,7 @@ void inspect(const Model& model, const State& state, const Workspace& work) {
       fail(state, i,
            fmt::format("moves at {:.4g} m/s, above the limit of {:.4g} m/s: the run has blown up", speed,
                        limits.speed));
-    if (!model.domain.isEmpty() && !model.domain.contains(c.position[i]))
+    if (!model.domain.isEmpty() && model.domain.exteriorDistance(c.position[i]) > limits.outside)
       fail(state, i, "has left the container");
   }
   for (const WallState& wall : state.walls)

@@ -46,9 +46,10 @@ struct Limits {
   double through =
       0.8;  // of a pebble's radius, into a mesh: past its centre it would come out on the other side
   double speed = 100;  // of any stone [m/s]
+  double outside = 0;  // of a stone's centre beyond the domain [m]
   template <class A>
   void archive(A& a) {
-    a(overlap, through, speed);
+    a(overlap, through, speed, outside);
   }
 };
 
@@ -76,7 +77,7 @@ struct Model : Conditions {
   std::vector<Material> materials;
   std::vector<ClumpTemplate> templates;
   std::vector<Wall> walls;
-  Eigen::AlignedBox3d domain;  // no stone's centre leaves it; empty: anywhere
+  Eigen::AlignedBox3d domain;  // no stone's centre leaves it farther than the limit; empty: anywhere
   TimeStepRule time_step;
   SearchRule search;
 };

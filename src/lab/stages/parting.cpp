@@ -51,7 +51,9 @@ void Parting::open(Simulation& sim, double share_of_stiffness) {
     smallest_ = std::min(smallest_, equal_volume_radius(sim, k));
   sim.model.gravity = Vec3::Zero();
   sim.model.local_damping = 0.7;
-  sim.model.limits.overlap = sim.model.limits.speed = std::numeric_limits<double>::infinity();
+  // A small stone below large ones may be pressed past a plane: it comes back.
+  Limits& limits = sim.model.limits;
+  limits.overlap = limits.speed = limits.outside = std::numeric_limits<double>::infinity();
   sim.model.pairs = sim.model.pairs.with_friction_up_to(0);
   sim.scale_step();
   soften(sim, share_of_stiffness, sim.model.pairs);

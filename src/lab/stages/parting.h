@@ -15,8 +15,8 @@ struct Overlaps {
 };
 Overlaps overlaps_of_stones(const Simulation& sim);
 
-/// From when it is opened to the end of the stage there is neither friction nor gravity, overlaps are not
-/// limited, and stones move so little in a step that none is thrown.
+/// From when it is opened to the end of the stage there is neither friction nor gravity, neither overlaps
+/// nor places are limited, and stones move so little in a step that none is thrown.
 class Parting {
  public:
   /// Stones of materials that no wall is made of meet each other with this share of their stiffness: they
