@@ -8,6 +8,7 @@
 #include "dem/respond.h"
 #include "dem/rotation.h"
 #include "dem/search.h"
+#include "dem/shares.h"
 
 namespace trackbed {
 namespace {
@@ -222,8 +223,8 @@ void prefetch(const PairBlock& block, const PairGeometry& geometry) {
 }
 
 int patch_forces(const Model& model, State& state, Workspace& work, Index patch, double dt) {
-  const Index size = static_cast<Index>(work.patch_size), n = work.rare_losses.size();
-  const Index first = patch * size, last = std::min(first + size, n);
+  const Index first = work.first_clump(static_cast<int>(patch)),
+              last = work.first_clump(static_cast<int>(patch) + 1);
   std::fill(work.sums.begin() + static_cast<std::ptrdiff_t>(first),
             work.sums.begin() + static_cast<std::ptrdiff_t>(last), ForceSum{});
   std::fill(work.rare_losses.begin() + static_cast<std::ptrdiff_t>(first),
@@ -253,8 +254,8 @@ void gather_clump(State& state, const Workspace& work, Index c) {
   Vec3 f = xyz(force), m = xyz(moment);
   for (int e = work.first_wall_entry[c]; e < work.first_wall_entry[c + 1]; ++e) {
     const WallResult& r = work.wall_results[static_cast<Index>(work.wall_entries[static_cast<Index>(e)])];
-    f -= r.force;
-    m += r.moment_clump;
+    f += r.force;
+    m += r.moment;
     losses += r.losses;
   }
   state.clumps.force[c] = f;
@@ -264,9 +265,9 @@ void gather_clump(State& state, const Workspace& work, Index c) {
 void gather_wall(const Model& model, State& state, const Workspace& work, Index w, double dt) {
   WallState& wall = state.walls[w];
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
-  for (int p = work.first_pair_of_wall[w]; p < work.first_pair_of_wall[w + 1]; ++p) {
-    force += work.wall_results[static_cast<Index>(p)].force;
-    moment += work.wall_results[static_cast<Index>(p)].moment_wall;
+  for (int k = work.first_sum_of_wall[w]; k < work.first_sum_of_wall[w + 1]; ++k) {
+    force += work.wall_sums[static_cast<Index>(k)].force;
+    moment += work.wall_sums[static_cast<Index>(k)].moment;
   }
   // Work done on the stones by what keeps the velocity of a wall, or of a body along its blocked axes, with
   // the mean of the reactions before and after the step.
@@ -283,27 +284,59 @@ void gather_wall(const Model& model, State& state, const Workspace& work, Index 
   wall.moment = moment;
 }
 
+/// Lets each thread that will come have the blocks of walls near its patches.
+void fill_queues(Workspace& work) {
+  work.wall_queues.resize(static_cast<Index>(omp_get_max_threads()));
+  const int threads = static_cast<int>(work.wall_queues.size());
+  for (int t = 0; t < threads; ++t) {
+    const Share own = share_of(t, threads, work.patches());
+    work.wall_queues[static_cast<Index>(t)] = {work.first_wall_block_of_patch[static_cast<Index>(own.first)],
+                                               work.first_wall_block_of_patch[static_cast<Index>(own.last)]};
+  }
+}
+
+/// Blocks of walls: those of this thread first, then what others have left.
+int queued_wall_forces(const Model& model, State& state, Workspace& work, double dt) {
+  int touching = 0;
+  const Index n = work.wall_queues.size(), own = static_cast<Index>(omp_get_thread_num());
+  for (Index k = 0; k < n; ++k) {
+    WallQueue& queue = work.wall_queues[(own + k) % n];
+    for (;;) {
+      int next = 0;
+#pragma omp atomic capture
+      next = queue.next++;
+      if (next >= queue.end) break;
+      const int block = work.wall_block_order[static_cast<Index>(next)];
+      touching += wall_block_forces(model, state, work, static_cast<Index>(block), dt);
+    }
+  }
+  return touching;
+}
+
 }  // namespace
 
 void contact_forces(const Model& model, State& state, Workspace& work, double dt) {
-  const int n = static_cast<int>(work.first_block_of_patch.size()) - 1;
-  const int n_walls = static_cast<int>(state.wall_blocks.size());
+  const int patches = work.patches();
   int touching = 0;
-  // A thread keeps its patches, whose memory is near it; whoever is ready first takes more of the walls.
-#pragma omp parallel reduction(+ : touching) if (n + n_walls > 8)
+  fill_queues(work);
+#pragma omp parallel reduction(+ : touching) if (is_worth_sharing(patches))
   {
-#pragma omp for schedule(static) nowait
-    for (int k = 0; k < n; ++k) touching += patch_forces(model, state, work, static_cast<Index>(k), dt);
-#pragma omp for schedule(dynamic, 1)
-    for (int k = 0; k < n_walls; ++k)
-      touching += wall_block_forces(model, state, work, static_cast<Index>(k), dt);
+    const Share own = own_share(patches);
+    for (int k = own.first; k < own.last; ++k)
+      touching += patch_forces(model, state, work, static_cast<Index>(k), dt);
+    touching += queued_wall_forces(model, state, work, dt);
   }
   work.touching = touching;
 }
 
 void gather_forces(const Model& model, State& state, Workspace& work, double dt) {
-#pragma omp parallel for schedule(static) if (state.clumps.size() > 64)
-  for (int c = 0; c < state.clumps.size(); ++c) gather_clump(state, work, static_cast<Index>(c));
+  const int patches = work.patches();
+#pragma omp parallel if (is_worth_sharing(patches))
+  {
+    const Share own = own_share(patches);
+    for (Index c = work.first_clump(own.first); c < work.first_clump(own.last); ++c)
+      gather_clump(state, work, c);
+  }
   for (Index w = 0; w < state.walls.size(); ++w) gather_wall(model, state, work, w, dt);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dem/rotation.h"
+#include "dem/shares.h"
 
 namespace trackbed {
 namespace {
@@ -269,15 +270,18 @@ void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
   double way = 0;
   const Index n = state.clumps.id.size();
-  const int groups = static_cast<int>(work.group_way.size());
-#pragma omp parallel for schedule(static) reduction(max : way) if (groups > 8)
-  for (int g = 0; g < groups; ++g) {
-    const Index first = static_cast<Index>(g) * Watch::group, end = std::min(first + Watch::group, n);
-    double longest = 0;
-    for (Index k = first; k < end; k += Lanes::size)
-      longest = std::max(longest, move_batch(model, state, work, Batch(k, n), kick_time, dt));
-    work.group_way[static_cast<Index>(g)] = longest;
-    way = std::max(way, longest);
+  const int patches = work.patches();
+#pragma omp parallel reduction(max : way) if (is_worth_sharing(patches))
+  {
+    const Share own = own_share(patches);
+    const Index last = work.first_clump(own.last);
+    for (Index first = work.first_clump(own.first); first < last; first += Watch::group) {
+      double longest = 0;
+      for (Index k = first; k < std::min(first + Watch::group, n); k += Lanes::size)
+        longest = std::max(longest, move_batch(model, state, work, Batch(k, n), kick_time, dt));
+      work.group_way[first / Watch::group] = longest;
+      way = std::max(way, longest);
+    }
   }
   work.way += way;
 }

@@ -60,19 +60,15 @@ void carry(const PairBlock& from, Index pair, PairBlock& to) {
 
 using Pairs = std::vector<std::pair<int, int>>;
 
-/// Lists of the pairs for which a clump is j: first[c] to first[c + 1] in `entries`.
-template <class Chosen>
-void list_by_second(const Pairs& pairs, Index n, Chosen&& chosen, std::vector<int>& first,
-                    std::vector<int>& entries) {
+/// Lists of the pairs that have a number for their second: first[c] to first[c + 1] in `entries`.
+void list_by_second(const Pairs& pairs, Index n, std::vector<int>& first, std::vector<int>& entries) {
   first.assign(n + 1, 0);
-  for (Index p = 0; p < pairs.size(); ++p)
-    if (chosen(p)) ++first[static_cast<Index>(pairs[p].second) + 1];
+  for (const auto& pair : pairs) ++first[static_cast<Index>(pair.second) + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());
-  entries.resize(static_cast<Index>(first.back()));
+  entries.resize(pairs.size());
   std::vector<int> next(first.begin(), first.end() - 1);
   for (Index p = 0; p < pairs.size(); ++p)
-    if (chosen(p))
-      entries[static_cast<Index>(next[static_cast<Index>(pairs[p].second)]++)] = static_cast<int>(p);
+    entries[static_cast<Index>(next[static_cast<Index>(pairs[p].second)]++)] = static_cast<int>(p);
 }
 
 /// Gives back what the growing of the lists has left over.
@@ -102,26 +98,40 @@ void index_pairs(const Pairs& near, const State& state, Workspace& work) {
   work.first_pair.assign(n + 1, 0);
   for (const auto& [i, j] : near) ++work.first_pair[static_cast<Index>(i) + 1];
   std::partial_sum(work.first_pair.begin(), work.first_pair.end(), work.first_pair.begin());
-  list_by_second(
-      near, n, [](Index) { return true; }, work.first_entry, work.entries);
+  list_by_second(near, n, work.first_entry, work.entries);
 
   work.sum_of_pair.resize(near.size());
   work.first_sum_of_patch.assign(patches + 1, 0);
-  int sums = static_cast<int>(n);
+  Pairs outer;  // of each sum: the patch it comes from and the clump it goes to
+  std::vector<int> last_sum(n, -1);
   for (Index p = 0; p < near.size(); ++p) {
-    const int of_i = near[p].first / work.patch_size;
-    const bool is_inside = of_i == near[p].second / work.patch_size;
-    work.sum_of_pair[p] = is_inside ? near[p].second : sums++;
-    if (!is_inside) ++work.first_sum_of_patch[static_cast<Index>(of_i) + 1];
+    const int of_i = near[p].first / work.patch_size, j = near[p].second;
+    if (of_i == j / work.patch_size) {
+      work.sum_of_pair[p] = j;
+      continue;
+    }
+    int& sum = last_sum[static_cast<Index>(j)];
+    if (sum < 0 || outer[static_cast<Index>(sum)].first != of_i) {
+      sum = static_cast<int>(outer.size());
+      outer.emplace_back(of_i, j);
+      ++work.first_sum_of_patch[static_cast<Index>(of_i) + 1];
+    }
+    work.sum_of_pair[p] = static_cast<int>(n) + sum;
   }
   std::partial_sum(work.first_sum_of_patch.begin(), work.first_sum_of_patch.end(),
                    work.first_sum_of_patch.begin());
   for (int& first : work.first_sum_of_patch) first += static_cast<int>(n);
-  const auto is_between = [&](Index p) { return work.sum_of_pair[p] >= static_cast<int>(n); };
-  list_by_second(near, n, is_between, work.first_sum, work.outer_sums);
-  for (int& r : work.outer_sums) r = work.sum_of_pair[static_cast<Index>(r)];
-  work.sums.assign(static_cast<Index>(sums), {});
+  list_by_second(outer, n, work.first_sum, work.outer_sums);
+  for (int& sum : work.outer_sums) sum += static_cast<int>(n);
+  work.sums.assign(n + outer.size(), {});
   work.rare_losses.assign(n, {});
+}
+
+/// Such that there are hardly more than 32 patches, which most numbers of threads share evenly.
+int patch_size_for(int clumps) {
+  constexpr int group = static_cast<int>(Watch::group), patches = 32, largest = 1024;
+  const int groups = (clumps + patches * group - 1) / (patches * group);
+  return std::clamp(groups * group, group, largest);
 }
 
 void rebuild_clump_pairs(State& state, Workspace& work) {
@@ -129,7 +139,7 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   std::vector<PairBlock> blocks;
   std::vector<PairGeometry> geometry;
   const bool with_search = work.pair_geometry.size() == state.pair_blocks.size();
-  work.patch_size = std::clamp(state.clumps.size() / 24, 16, 1024);
+  work.patch_size = patch_size_for(state.clumps.size());
   const auto begins_block = [&](int i) {
     if (blocks.empty()) return true;
     const int last = blocks.back().pairs.back().i;
@@ -170,12 +180,58 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   index_pairs(near, state, work);
 }
 
+/// Whether two pairs of a wall and a clump share a sum of what they do to the wall. Not by blocks, which
+/// depend on when the pairs were made.
+bool are_summed_together(const std::pair<int, int>& a, const std::pair<int, int>& b) {
+  return a.first == b.first && a.second / WallBlock::group == b.second / WallBlock::group;
+}
+
+/// Where each pair of a clump and a wall lies, which of them each clump has, where its effect on the wall
+/// goes, and which blocks lie in each patch.
+void index_wall_pairs(const Model& model, const Pairs& near, const State& state, Workspace& work) {
+  const Index n = static_cast<Index>(state.clumps.size());
+  work.wall_results.assign(near.size(), {});
+  list_by_second(near, n, work.first_wall_entry, work.wall_entries);
+
+  work.sum_of_wall_pair.resize(near.size());
+  work.first_sum_of_wall.assign(model.walls.size() + 1, 0);
+  int sums = 0;
+  for (Index p = 0; p < near.size(); ++p) {
+    if (p == 0 || !are_summed_together(near[p - 1], near[p])) {
+      ++sums;
+      ++work.first_sum_of_wall[static_cast<Index>(near[p].first) + 1];
+    }
+    work.sum_of_wall_pair[p] = sums - 1;
+  }
+  std::partial_sum(work.first_sum_of_wall.begin(), work.first_sum_of_wall.end(),
+                   work.first_sum_of_wall.begin());
+  work.wall_sums.assign(static_cast<Index>(sums), {});
+
+  work.wall_pair_places.clear();
+  Pairs by_patch;
+  for (Index b = 0; b < state.wall_blocks.size(); ++b) {
+    const std::vector<WallPair>& pairs = state.wall_blocks[b].pairs;
+    work.wall_geometry[b].first_pair = static_cast<int>(work.wall_pair_places.size());
+    for (Index k = 0; k < pairs.size(); ++k)
+      work.wall_pair_places.push_back({static_cast<int>(b), static_cast<int>(k)});
+    by_patch.emplace_back(0, pairs[pairs.size() / 2].clump / work.patch_size);
+  }
+  list_by_second(by_patch, static_cast<Index>(work.patches()), work.first_wall_block_of_patch,
+                 work.wall_block_order);
+}
+
 void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
   const auto near = near_walls(model, state, work);
   std::vector<WallBlock> blocks;
+  const auto begins_block = [&](int wall, int clump) {
+    if (blocks.empty()) return true;
+    const std::vector<WallPair>& pairs = blocks.back().pairs;
+    return pairs.back().wall != wall ||
+           (pairs.size() >= WallBlock::full && !are_summed_together({wall, clump}, key_of(pairs.back())));
+  };
   OldPairs old_pairs(state.wall_blocks);
   for (const auto& [wall, clump] : near) {
-    if (blocks.empty() || blocks.back().pairs.size() == WallBlock::capacity) blocks.emplace_back();
+    if (begins_block(wall, clump)) blocks.emplace_back();
     WallBlock& block = blocks.back();
     block.pairs.push_back({clump, wall, static_cast<int>(block.keys.size()), 0});
     const auto found = old_pairs.find({wall, clump});
@@ -189,7 +245,6 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
                         old.memory.begin() + from.first + from.count);
   }
   state.wall_blocks = std::move(blocks);
-  work.wall_results.assign(near.size(), {});
   // Candidates against walls are looked for anew: there are few, and their facet lists are not worth
   // carrying.
   work.wall_geometry.assign(state.wall_blocks.size(), {});
@@ -200,21 +255,7 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
     work.wall_geometry[b].candidates.resize(state.wall_blocks[b].keys.size());
     for (const WallPair& p : state.wall_blocks[b].pairs) work.wall_geometry[b].watch.add(p.clump);
   }
-
-  const Index n = static_cast<Index>(state.clumps.size());
-  work.first_wall_entry.assign(n + 1, 0);
-  work.first_pair_of_wall.assign(model.walls.size() + 1, 0);
-  for (const auto& [wall, clump] : near) {
-    ++work.first_wall_entry[static_cast<Index>(clump) + 1];
-    ++work.first_pair_of_wall[static_cast<Index>(wall) + 1];
-  }
-  std::partial_sum(work.first_wall_entry.begin(), work.first_wall_entry.end(), work.first_wall_entry.begin());
-  std::partial_sum(work.first_pair_of_wall.begin(), work.first_pair_of_wall.end(),
-                   work.first_pair_of_wall.begin());
-  work.wall_entries.resize(near.size());
-  std::vector<int> next(work.first_wall_entry.begin(), work.first_wall_entry.end() - 1);
-  for (Index p = 0; p < near.size(); ++p)
-    work.wall_entries[static_cast<Index>(next[static_cast<Index>(near[p].second)]++)] = static_cast<int>(p);
+  index_wall_pairs(model, near, state, work);
 }
 
 /// All pebbles as rows.

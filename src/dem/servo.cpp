@@ -9,23 +9,16 @@ namespace trackbed {
 
 using Index = std::size_t;
 
-double stiffness_along(const Model& model, const State& state, const Workspace& work, int wall,
-                       const Vec3& direction) {
+double stiffness_along(const Model& model, const State& state, int wall, const Vec3& direction) {
   double k = 0;
-  for (int pair = work.first_pair_of_wall[static_cast<Index>(wall)];
-       pair < work.first_pair_of_wall[static_cast<Index>(wall) + 1]; ++pair) {
-    const WallBlock& block = state.wall_blocks[static_cast<Index>(pair / WallBlock::capacity)];
-    visit_pair(model, state, block, block.pairs[static_cast<Index>(pair % WallBlock::capacity)],
-               [&](const Touching& t) {
-                 const double along = t.normal.dot(direction);
-                 k += t.properties->kn * along * along + t.properties->ks * (1.0 - along * along);
-               });
-  }
+  visit_wall(model, state, wall, [&](const Touching& t) {
+    const double along = t.normal.dot(direction);
+    k += t.properties->kn * along * along + t.properties->ks * (1.0 - along * along);
+  });
   return k;
 }
 
-double servo_speed(const Model& model, const State& state, const Workspace& work, int wall,
-                   const Vec3& direction, double target) {
+double servo_speed(const Model& model, const State& state, int wall, const Vec3& direction, double target) {
   constexpr double gain = 0.8, share_of_impact = 0.05;
   const Clumps& c = state.clumps;
   const double heaviest = c.mass.empty() ? 1.0 : *std::max_element(c.mass.begin(), c.mass.end());
@@ -33,7 +26,7 @@ double servo_speed(const Model& model, const State& state, const Workspace& work
   const double limit = share_of_impact * std::abs(target) / std::sqrt(heaviest * stiffest);
 
   const double missing = target + state.walls[static_cast<Index>(wall)].force.dot(direction);
-  const double stiffness = stiffness_along(model, state, work, wall, direction);
+  const double stiffness = stiffness_along(model, state, wall, direction);
   if (stiffness == 0) return missing > 0 ? limit : 0.0;
   return std::clamp(gain * missing / (stiffness * state.planned_dt), -limit, limit);
 }

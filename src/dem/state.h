@@ -125,8 +125,10 @@ struct WallPair {
   }
 };
 
+/// Consecutive pairs of clumps with one wall that one thread works on at a time.
 struct WallBlock {
-  static constexpr int capacity = 16;
+  static constexpr int full = 16;   // no further group's pairs are added to as many
+  static constexpr int group = 64;  // clumps with consecutive numbers, whose effect on a wall is one sum
   std::vector<WallPair> pairs;
   std::vector<std::int32_t> keys;  // pebble
   std::vector<WallMemory> memory;

@@ -151,9 +151,10 @@ DiagonalStiffness stiffness_of(const Model& model, const State& state, const Wor
     add_pair(static_cast<Index>(pair), false);
   for (int e = work.first_wall_entry[c]; e < work.first_wall_entry[c + 1]; ++e) {
     const int pair = work.wall_entries[static_cast<Index>(e)];
-    const WallBlock& block = state.wall_blocks[static_cast<Index>(pair / WallBlock::capacity)];
-    const WallPair& p = block.pairs[static_cast<Index>(pair % WallBlock::capacity)];
-    visit_pair(model, state, block, p, [&](const Touching& t) { add_contact(t, t.lever_1, axes, k); });
+    const PairPlace place = work.wall_pair_places[static_cast<Index>(pair)];
+    const WallBlock& block = state.wall_blocks[static_cast<Index>(place.block)];
+    visit_pair(model, state, block, block.pairs[static_cast<Index>(place.index)],
+               [&](const Touching& t) { add_contact(t, t.lever_1, axes, k); });
   }
   return k;
 }
@@ -161,12 +162,7 @@ DiagonalStiffness stiffness_of(const Model& model, const State& state, const Wor
 DiagonalStiffness stiffness_of_wall(const Model& model, const State& state, const Workspace& work, int wall) {
   DiagonalStiffness k;
   const Mat3& axes = work.wall_rotation[static_cast<Index>(wall)];
-  const int last = work.first_pair_of_wall[static_cast<Index>(wall) + 1];
-  for (int pair = work.first_pair_of_wall[static_cast<Index>(wall)]; pair < last; ++pair) {
-    const WallBlock& block = state.wall_blocks[static_cast<Index>(pair / WallBlock::capacity)];
-    visit_pair(model, state, block, block.pairs[static_cast<Index>(pair % WallBlock::capacity)],
-               [&](const Touching& t) { add_contact(t, t.lever_2, axes, k); });
-  }
+  visit_wall(model, state, wall, [&](const Touching& t) { add_contact(t, t.lever_2, axes, k); });
   return k;
 }
 

@@ -92,6 +92,17 @@ void visit_pair(const Model& model, const State& state, const WallBlock& block, 
   }
 }
 
+/// The touching contacts of one wall.
+template <class Visit>
+void visit_wall(const Model& model, const State& state, int wall, Visit&& visit) {
+  for (const WallBlock& block : state.wall_blocks) {
+    if (block.pairs.back().wall < wall) continue;
+    if (block.pairs.front().wall > wall) break;
+    for (const WallPair& pair : block.pairs)
+      if (pair.wall == wall) visit_pair(model, state, block, pair, visit);
+  }
+}
+
 /// All touching contacts: stone pairs first, then walls, in the order of their indices.
 template <class Visit>
 void visit_touching(const Model& model, const State& state, Visit&& visit) {

@@ -42,6 +42,7 @@ struct PairMotion {
   Row mean_spin;  // [rad/s]
   Row shift;      // from the stone's centre of mass to the wall's origin [m]
   int properties;
+  int sum;  // in Workspace::wall_sums
 };
 
 /// A place where a pebble touches a wall.
@@ -162,7 +163,7 @@ using Batch = std::array<const Touch*, Lanes::size>;
 /// Lets the touches of a batch respond, those in the lanes of `wanted`.
 template <class Law>
 void respond(const Batch& f, unsigned wanted, const Touches& s, const ContactProperties& p, double dt,
-             WallResult* results) {
+             WallResult* results, WallSum* sums) {
   const auto motion = [&](Index n) -> const PairMotion& { return s.motions[static_cast<Index>(f[n]->pair)]; };
   Lanes unused;
   ContactKinematicsOf<Lanes> k;
@@ -185,15 +186,17 @@ void respond(const Batch& f, unsigned wanted, const Touches& s, const ContactPro
       return Vec3(v.x()[lane], v.y()[lane], v.z()[lane]);
     };
     WallResult& out = results[f[static_cast<Index>(lane)]->pair];
-    out.force += in_lane(r.force);
-    out.moment_clump -= in_lane(r.moment);
-    out.moment_wall += in_lane(on_wall);
+    out.force -= in_lane(r.force);
+    out.moment -= in_lane(r.moment);
+    WallSum& sum = sums[s.motions[static_cast<Index>(f[static_cast<Index>(lane)]->pair)].sum];
+    sum.force += in_lane(r.force);
+    sum.moment += in_lane(on_wall);
     out.losses += Losses{r.losses.friction[lane], r.losses.rolling[lane], r.losses.dashpot[lane]};
   }
 }
 
 /// Lets all touches of a block respond.
-void respond(const Model& model, const Touches& s, double dt, WallResult* results) {
+void respond(const Model& model, const Touches& s, double dt, WallResult* results, WallSum* sums) {
   const Index n = s.touches.size();
   for (Index first = 0; first < n; first += Lanes::size) {
     Batch f;
@@ -202,7 +205,7 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
         lanes_of(n - first), [&](Index k) { return s.motions[static_cast<Index>(f[k]->pair)].properties; },
         [&](int properties, unsigned wanted) {
           const ContactProperties& p = model.pairs[properties];
-          with_law(p.law, [&]<class Law>() { respond<Law>(f, wanted, s, p, dt, results); });
+          with_law(p.law, [&]<class Law>() { respond<Law>(f, wanted, s, p, dt, results, sums); });
         });
   }
 }
@@ -216,20 +219,22 @@ void respond(const Model& model, const Touches& s, double dt, WallResult* result
   WallGeometry& geometry = work.wall_geometry[b];
   if (geometry.watch.step(work.group_way, work.wall_step_way)) refresh(model, state, work, block, geometry);
   s.clear();
-  WallResult* results = &work.wall_results[b * WallBlock::capacity];
+  WallResult* results = &work.wall_results[static_cast<Index>(geometry.first_pair)];
   for (Index k = 0; k < block.pairs.size(); ++k) {
     const WallPair& pair = block.pairs[k];
     results[k] = {};
     const Index c = static_cast<Index>(pair.clump), w = static_cast<Index>(pair.wall);
     const Vec3 shift = state.walls[w].pose.position - state.clumps.position[c];
     s.motions.push_back(motion_of(work.motion[c], shift, model.walls[w], state.walls[w]));
+    s.motions.back().sum = work.sum_of_wall_pair[static_cast<Index>(geometry.first_pair) + k];
+    work.wall_sums[static_cast<Index>(s.motions.back().sum)] = {};
     s.motions.back().properties = model.pairs.index(state.clumps.material[c], model.walls[w].material);
     const WallFrame f{model.walls[w].shape, state.clumps.orientation[c].toRotationMatrix(),
                       work.wall_rotation[w], shift};
     find_touches(f, pair, geometry, geometry.tested[k], model.pairs[s.motions.back().properties], dt, block,
                  s, results[k].losses);
   }
-  respond(model, s, dt, results);
+  respond(model, s, dt, results, work.wall_sums.data());
   return static_cast<int>(s.touches.size());
 }
 

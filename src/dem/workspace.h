@@ -84,6 +84,7 @@ struct WallGeometry {
   std::vector<double> due;  // sum of clump's and wall's travel at which their motion must be measured [m]
   std::vector<WallCandidate> candidates;
   std::vector<int> facets;
+  int first_pair = 0;  // number of its first pair, through all blocks
   Watch watch;
 };
 
@@ -101,12 +102,22 @@ struct alignas(64) ForceSum {
   Row moment = 0.0;  // about its centre of mass [N m], and the friction loss of contacts of which it is i [J]
 };
 
-/// What the contacts of a clump with a wall do.
+/// What the contacts of a clump with a wall do to the clump.
 struct WallResult {
-  Vec3 force = Vec3::Zero();         // on the wall [N]
-  Vec3 moment_clump = Vec3::Zero();  // on the clump about its centre of mass [N m]
-  Vec3 moment_wall = Vec3::Zero();   // on the wall about its frame's origin [N m]
+  Vec3 force = Vec3::Zero();   // [N]
+  Vec3 moment = Vec3::Zero();  // about its centre of mass [N m]
   Losses losses;
+};
+
+/// What contacts of some clumps do to a wall.
+struct alignas(64) WallSum {
+  Vec3 force = Vec3::Zero();   // [N]
+  Vec3 moment = Vec3::Zero();  // about its frame's origin [N m]
+};
+
+/// Blocks of walls that one thread works on first, in Workspace::wall_block_order.
+struct alignas(64) WallQueue {
+  int next, end;
 };
 
 /// Where a pair lies.
@@ -144,14 +155,16 @@ struct Workspace {
   std::vector<WallGeometry> wall_geometry;  // beside State::wall_blocks
 
   // Patches: runs of consecutive clumps, each with all pairs of which they are i, that one thread works on at
-  // a time. Their size depends on the number of clumps alone.
+  // a time. Their size depends on the number of clumps alone, and is a multiple of that of a watched group.
   int patch_size = 1;
   std::vector<int> first_block_of_patch;
-  // Of each clump, from the pairs of its own patch; then of each pair between clumps of two patches, on its
-  // j.
+  // Of each clump, from the pairs of its own patch; then, patch after patch, of each clump of another patch
+  // that is j of one of its pairs.
   std::vector<ForceSum> sums;
   std::vector<Losses> rare_losses;  // of each clump: rolling and dashpots [J]
+  // Of each pair of a clump and a wall; of groups of them.
   std::vector<WallResult> wall_results;
+  std::vector<WallSum> wall_sums;
 
   // Pairs of each clump: a range of pairs where it is i, a list of pairs where it is j, both ascending.
   std::vector<int> first_pair, first_entry, entries;
@@ -159,14 +172,24 @@ struct Workspace {
   // Of each clump: the sums that come from other patches, ascending. Of each pair: where the effect on j
   // goes.
   std::vector<int> first_sum, outer_sums, sum_of_pair;
-  // Of each patch: its range of the sums of pairs.
+  // Of each patch: its range of these sums.
   std::vector<int> first_sum_of_patch;
   // Wall pairs of each clump in ascending order of the wall.
   std::vector<int> first_wall_entry, wall_entries;
-  std::vector<int> first_pair_of_wall;  // range in the wall pairs
+  std::vector<PairPlace> wall_pair_places;
+  std::vector<int> sum_of_wall_pair, first_sum_of_wall;
+  // Blocks of walls by the patch in which they lie, roughly; and who works on them next.
+  std::vector<int> wall_block_order, first_wall_block_of_patch;
+  std::vector<WallQueue> wall_queues;
 
   int touching = 0;  // contacts in the last step
   Profile profile;
+
+  int patches() const { return static_cast<int>(first_block_of_patch.size()) - 1; }
+  /// Clumps of a patch: from its first to the first of the next.
+  std::size_t first_clump(int patch) const {
+    return std::min(static_cast<std::size_t>(patch) * static_cast<std::size_t>(patch_size), motion.size());
+  }
 };
 
 }  // namespace trackbed

@@ -73,8 +73,7 @@ Simulation make_block(double mu, bool may_turn) {
 void press(Simulation& sim, double speed) {
   for (std::size_t side = first_side; side < walls; ++side)
     sim.state.walls[side].velocity =
-        inward[side] *
-        servo_speed(sim.model, sim.state, sim.work, static_cast<int>(side), inward[side], side_force);
+        inward[side] * servo_speed(sim.model, sim.state, static_cast<int>(side), inward[side], side_force);
   sim.state.walls[lid].velocity.z() = -speed;
   sim.step();
 }

@@ -17,7 +17,7 @@ const Vec3 down(0, 0, -1);
 /// One step with the lid driven by the servo; its force on the stones after it [N].
 double press(Simulation& sim, int lid, double target) {
   WallState& wall = sim.state.walls[static_cast<std::size_t>(lid)];
-  wall.velocity.z() = -servo_speed(sim.model, sim.state, sim.work, lid, down, target);
+  wall.velocity.z() = -servo_speed(sim.model, sim.state, lid, down, target);
   sim.step();
   return wall.force.z();
 }

@@ -56,14 +56,6 @@ Face face_of(const Vec3& inwards, const std::vector<Facing>& facings) {
       ->face;
 }
 
-/// Contacts of the stones with one wall or body.
-template <class Visit>
-void visit_wall(const Simulation& sim, std::size_t wall, Visit&& visit) {
-  for (const WallBlock& block : sim.state.wall_blocks)
-    for (const WallPair& pair : block.pairs)
-      if (pair.wall == static_cast<int>(wall)) visit_pair(sim.model, sim.state, block, pair, visit);
-}
-
 /// Number and magnitudes of the elastic contact forces on a wall or body.
 struct WallContacts {
   int number = 0;
@@ -73,7 +65,7 @@ struct WallContacts {
 
 WallContacts contacts_of_wall(const Simulation& sim, std::size_t wall) {
   WallContacts found;
-  visit_wall(sim, wall, [&](const Touching& t) {
+  visit_wall(sim.model, sim.state, static_cast<int>(wall), [&](const Touching& t) {
     const double force = t.force().norm();
     ++found.number;
     found.sum += force;
@@ -87,7 +79,7 @@ Vec3 force_on_face(const Simulation& sim, std::size_t wall, Face face) {
   const std::vector<Facing> facings = facings_of(sim, wall);
   const Quat back = sim.state.walls[wall].pose.orientation.conjugate();
   Vec3 force = Vec3::Zero();
-  visit_wall(sim, wall, [&](const Touching& t) {
+  visit_wall(sim.model, sim.state, static_cast<int>(wall), [&](const Touching& t) {
     if (face_of(back * t.normal, facings) == face) force += t.force();
   });
   return force;

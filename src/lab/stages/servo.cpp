@@ -40,8 +40,7 @@ class Servo : public Stage {
     from_ = state(sim).pose.position;
   }
   void control(Simulation& sim) override {
-    state(sim).velocity =
-        servo_speed(sim.model, sim.state, sim.work, wall_, in_.direction, in_.force) * in_.direction;
+    state(sim).velocity = servo_speed(sim.model, sim.state, wall_, in_.direction, in_.force) * in_.direction;
   }
   bool finished(const Simulation& sim) override { return sim.state.time >= end_; }
   double remaining(const Simulation& sim) const override { return end_ - sim.state.time; }
