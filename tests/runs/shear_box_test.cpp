@@ -163,11 +163,14 @@ TEST_F(ShearBox, long_AMixtureHasItsShareByMassWithinAStone) {
 // The load stays on the cover while the lower tray moves, no stone leaves the trays, and the forces of what
 // moves and what stands balance.
 TEST_F(ShearBox, long_IsShearedUnderALoadThatStays) {
-  const CaseInput in = read();
+  // Local damping acts on each stone against its motion as if from outside: with the usual 0.7 it bears 7 %
+  // of the lower tray's force at this speed, with 0.2 3 %.
+  const CaseInput in = read({"numerics.damping=0.05"});
   Simulation sim = make_simulation(*document_, in);
   const auto force = [&](const char* wall) {
     return sim.state.walls[static_cast<std::size_t>(sim.find_wall(wall))].force;
   };
+  Vec3 lower = Vec3::Zero(), upper = Vec3::Zero(), cover = Vec3::Zero();  // means over the shear
   for (NamedStage& named : stages_of(in)) {
     if (named.name != "shear") {
       carry_out(sim, *named.stage);
@@ -182,18 +185,19 @@ TEST_F(ShearBox, long_IsShearedUnderALoadThatStays) {
       const double bears = force("cover").z();
       sum += bears;
       away += std::abs(bears - 1001) > 0.05 * 1001;
+      lower += force("lower"), upper += force("upper"), cover += force("cover");
       ++n;
     }
+    lower /= n, upper /= n, cover /= n;
     EXPECT_NEAR(sum / n, 1001, 2);  // 1 kN and its weight of 0.98 N
     EXPECT_LT(away, n / 20);
     EXPECT_NEAR(value_of(named.stage->close(sim), "distance"), 0.012, 1e-4);
   }
   for (const Vec3& x : sim.state.clumps.position) EXPECT_TRUE(is_in_room(sim, x)) << x.transpose();
   // The lower tray drags the stones to the right, the upper one and the cover hold them back.
-  const Vec3 lower = force("lower"), upper = force("upper"), cover = force("cover");
-  EXPECT_LT(lower.x(), -300);
+  EXPECT_LT(lower.x(), -200);
   EXPECT_GT(upper.x(), 0);
-  EXPECT_NEAR(lower.x() + upper.x() + cover.x(), 0, 0.05 * std::abs(lower.x()));
+  EXPECT_NEAR(lower.x() + upper.x() + cover.x(), 0, 0.01 * std::abs(lower.x()));
   EXPECT_NEAR(lower.z() + upper.z() + cover.z() + weight(sim) - 0.981, 0, 0.02 * 1001);
 }
 
