@@ -208,13 +208,13 @@ void index_wall_pairs(const Model& model, const Pairs& near, const State& state,
   work.wall_sums.assign(static_cast<Index>(sums), {});
 
   work.wall_pair_places.clear();
-  Pairs by_patch;
+  Pairs by_patch;  // of each block: itself and the patch
   for (Index b = 0; b < state.wall_blocks.size(); ++b) {
     const std::vector<WallPair>& pairs = state.wall_blocks[b].pairs;
     work.wall_geometry[b].first_pair = static_cast<int>(work.wall_pair_places.size());
     for (Index k = 0; k < pairs.size(); ++k)
       work.wall_pair_places.push_back({static_cast<int>(b), static_cast<int>(k)});
-    by_patch.emplace_back(0, pairs[pairs.size() / 2].clump / work.patch_size);
+    by_patch.emplace_back(static_cast<int>(b), pairs[pairs.size() / 2].clump / work.patch_size);
   }
   list_by_second(by_patch, static_cast<Index>(work.patches()), work.first_wall_block_of_patch,
                  work.wall_block_order);

@@ -26,7 +26,7 @@ TEST(sleeper_on_ballast, long_short_form_gives_what_the_case_expects) {
              contacts = column("sleeper.contacts", Dimension::none);
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_GE(force[k], level[k]);
-    EXPECT_LT(force[k], 1.02 * level[k]);
+    EXPECT_LT(force[k], 1.01 * level[k]);  // stiffness of the bed x the way of a step
     EXPECT_GT(most[k], mean[k]);
     EXPECT_GT(contacts[k] * mean[k], level[k]);  // magnitudes add up to more than their sum
     EXPECT_LT(contacts[k] * mean[k], 2 * level[k]);
