@@ -22,14 +22,11 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", s / 3600, s % 3600 / 60);
 }
 
-std::string progress_line(const ProgressState& state, double steps_per_second, double stage_seconds) {
+std::string progress_line(const ProgressState& state, double steps_per_second, double seconds_left) {
   std::string line = fmt::format("{}  t = {:.4g} s  {:.3g} steps/s  {} contacts", state.stage, state.time,
                                  steps_per_second, state.contacts);
-  if (state.fraction_done > 0 && state.fraction_done < 1) {
-    // What is left takes as long, for its part, as what is done took.
-    const double left = stage_seconds * (1 - state.fraction_done) / state.fraction_done;
-    line += fmt::format("  {:.0f} %, {} left", 100 * state.fraction_done, duration_text(left));
-  }
+  if (state.fraction_done > 0 && state.fraction_done < 1)
+    line += fmt::format("  {:.0f} %, {} left", 100 * state.fraction_done, duration_text(seconds_left));
   if (state.search_share > 0.3)
     line += fmt::format("  (search {:.0f} %: a larger skin may help)", 100 * state.search_share);
   return line;
@@ -45,13 +42,17 @@ Progress::Progress(std::FILE* out, Style style, Clock::time_point start)
 
 void Progress::update(const ProgressState& state, Clock::time_point now) {
   if (style_ == Style::quiet) return;
+  if (fraction_at_start_ < 0) fraction_at_start_ = state.fraction_done;
   const double period = style_ == Style::terminal ? 0.2 : 5.0;  // [s]
   const double passed = seconds_between(printed_, now);
   if (passed < period) return;
   rate_ = static_cast<double>(state.steps - steps_at_rate_) / seconds_between(rate_from_, now);
   steps_at_rate_ = state.steps;
   rate_from_ = printed_ = now;
-  print(progress_line(state, rate_, seconds_between(stage_start_, now)), false);
+  // What is left takes as long, for its part, as what was done here took.
+  const double done = state.fraction_done - fraction_at_start_;
+  const double left = seconds_between(stage_start_, now) * (1 - state.fraction_done) / done;
+  print(progress_line(state, rate_, left), false);
 }
 
 void Progress::end_stage(const ProgressState& state, Clock::time_point now) {
@@ -60,10 +61,11 @@ void Progress::end_stage(const ProgressState& state, Clock::time_point now) {
   if (since_rate > 0) rate_ = static_cast<double>(state.steps - steps_at_rate_) / since_rate;
   stage_start_ = rate_from_ = printed_ = now;
   steps_at_rate_ = state.steps;
+  fraction_at_start_ = -1;
   if (style_ == Style::quiet) return;
   ProgressState done = state;
   done.fraction_done = 1;
-  print(progress_line(done, rate_, seconds) + "  done in " + duration_text(seconds), true);
+  print(progress_line(done, rate_, 0) + "  done in " + duration_text(seconds), true);
 }
 
 void Progress::print(const std::string& line, bool keep) {

@@ -45,11 +45,12 @@ class Progress {
   Style style_;
   Clock::time_point stage_start_, printed_, rate_from_;
   std::uint64_t steps_at_rate_ = 0;
-  double rate_ = 0.0;  // [steps/s], of the time since the line before
+  double rate_ = 0.0;                // [steps/s], of the time since the line before
+  double fraction_at_start_ = -1.0;  // of the stage, where this run took it up; negative: not told yet
 };
 
 /// "settle  t = 0.25 s  1.2e3 steps/s  5400 contacts  40 %, 12 s left  (search 35 %: a larger skin may help)"
-std::string progress_line(const ProgressState& state, double steps_per_second, double stage_seconds);
+std::string progress_line(const ProgressState& state, double steps_per_second, double seconds_left);
 
 /// "8 s", "3 min 20 s", "2 h 05 min"
 std::string duration_text(double seconds);

@@ -37,6 +37,15 @@ TEST(Progress, FewPlainLinesForAPipe) {
             "1/2 fill  t = 1 s  1e+03 steps/s  500 contacts  done in 10 s\n");
 }
 
+TEST(Progress, AResumedStageIsJudgedByWhatWasDoneSince) {
+  const auto resumed = [](Progress& progress, Progress::Clock::time_point start) {
+    for (std::uint64_t step = 1; step <= 5'000; ++step)
+      progress.update({"push", 1.0, step, 500, 0.45 + double(step) / 100'000, 0.1}, start + step * 1ms);
+  };
+  EXPECT_EQ(printed(Progress::Style::lines, resumed),
+            "push  t = 1 s  1e+03 steps/s  500 contacts  50 %, 50 s left\n");
+}
+
 TEST(Progress, OneLineInPlaceOnATerminal) {
   const std::string text = printed(Progress::Style::terminal, ten_seconds);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\r'), 51);  // 5 in a second, and the last
