@@ -45,7 +45,9 @@ class Bed {
     stages.erase(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(first_));
     Simulation sim = sim_;
     carry(sim, stages, bed, out);
-    return of_whole_sleeper(history(out / "series.csv"), in_.share, in_.below);
+    const PressHistory history = read_series(out / "series.csv");
+    check_curve(history, force * in_.share, out);
+    return of_whole_sleeper(history, in_.share, in_.below);
   }
 
  private:
@@ -65,7 +67,19 @@ class Bed {
     run_recorded(sim, stages, bed, options);
   }
 
-  PressHistory history(const fs::path& series) const {
+  /// Refuses a bed that the track could not take as a support, where it still can be said why.
+  static void check_curve(const PressHistory& history, double force, const fs::path& out) {
+    try {
+      support_curve(history);
+    } catch (const InputError& error) {
+      throw RunError(
+          fmt::format("{}: pressed with {:.4g} N, recorded {} times: {}; press more slowly, or record more "
+                      "often (record.every)",
+                      out.string(), force, history.force.size(), error.what()));
+    }
+  }
+
+  PressHistory read_series(const fs::path& series) const {
     const CsvTable table(series);
     const std::vector<std::string> stage = table.texts("stage");
     const std::vector<double> height = table.numbers(in_.body + ".displacement_z", Dimension::length),

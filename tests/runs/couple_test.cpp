@@ -254,6 +254,19 @@ TEST(Couple, ATinyBedAndAShortTrackAgree) {
   EXPECT_EQ(read_file(again.path / "out/rounds.csv"), read_file(out / "rounds.csv"));
 }
 
+TEST(Couple, ABedRecordedTooSeldomSaysSo) {
+  const TemporaryFolder folder;
+  try {
+    run_tiny(folder.path, {"bed.set=[\"seed=1\",\"record.every=\\\"1 s\\\"\"]"});
+    FAIL() << "two rows are no curve";
+  } catch (const RunError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("bed-1-0: pressed with"), std::string::npos) << message;
+    EXPECT_NE(message.find("recorded 2 times: the sleeper does not sink"), std::string::npos) << message;
+    EXPECT_NE(message.find("record.every"), std::string::npos) << message;
+  }
+}
+
 TEST(Couple, WhatDoesNotFitIsRefusedWithItsPlace) {
   const TemporaryFolder folder;
   const auto message = [&](const std::string& set) -> std::string {
