@@ -7,15 +7,19 @@
 #include "base/error.h"
 #include "command_line.h"
 #include "commands.h"
+#include "io/echo.h"
 #include "io/progress.h"
 #include "lab/influence.h"
 #include "lab/recorder.h"
 #include "lab/run.h"
+#include "lab/study/results.h"
+#include "resumable.h"
 
 namespace trackbed {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
 struct ApssOptions {
   fs::path file, out;
@@ -56,12 +60,9 @@ struct Work {
   double stones = 0, pebbles = 0, contacts = 0, seconds = 0;
 };
 
-Work work_of(const Summary& summary) {
-  const auto value = [&](std::string_view name) {
-    const auto found = std::ranges::find(summary.measures, name, &Result::name);
-    return found == summary.measures.end() ? 0.0 : found->value;
-  };
-  return {value("stones"), value("pebbles"), value("contacts"), summary.wall};
+Work work_of(const Json& summary) {
+  const auto value = [&](const char* name) { return measure_in(summary, name).value_or(0.0); };
+  return {value("stones"), value("pebbles"), value("contacts"), summary["wall_s"].get<double>()};
 }
 
 /// The case with another region in the place of the one that is to be found.
@@ -72,54 +73,57 @@ std::vector<std::string> with_region(const ApssOptions& o, const std::string& na
   return overrides;
 }
 
-Summary run_in(const ApssOptions& o, const std::string& folder, const std::vector<std::string>& overrides) {
+/// Results of the case with these overrides: those that its folder has, if `may_take`, or else those of a
+/// run.
+Json results_in(const ApssOptions& o, const std::string& folder, const std::vector<std::string>& overrides,
+                bool may_take) {
   const Document document(o.file, overrides);
   CaseInput experiment = read_case(document);
   experiment.record.tables = true;  // the field is read from them
   RunOptions options = o.run;
   options.out = o.out / folder;
-  return run(document, experiment, options);
+  if (may_take)
+    if (auto found = results_of(echo(experiment), options.out)) {
+      fmt::print("{} holds the results of this case already\n", options.out.string());
+      return *found;
+    }
+  return to_json(run_until_signal(document, experiment, options));
 }
 
-/// Runs the case with balls alone, unless its results are there already; returns its stones.csv.
+/// The case with balls alone; returns its stones.csv. Another share or another area does not change it.
 fs::path run_balls(const ApssOptions& o, const std::string& region, const std::string& stage) {
-  const fs::path out = o.out / "balls";
-  const fs::path stones = out / "stages" / (file_name_of(stage) + "-stones.csv");
-  if (fs::exists(out / "summary.json") && fs::exists(stones)) {
-    fmt::print("the bed of balls is taken from {}\n", out.string());
-    return stones;
-  }
-  const Summary summary = run_in(o, "balls", with_region(o, region, R"({kind = "box", above = "1000 km"})"));
-  fmt::print("bed of balls: {}\n", duration_text(summary.wall));
-  return stones;
+  const Json summary =
+      results_in(o, "balls", with_region(o, region, R"({kind = "box", above = "1000 km"})"), true);
+  fmt::print("bed of balls: {}\n", duration_text(work_of(summary).seconds));
+  return o.out / "balls" / "stages" / (file_name_of(stage) + "-stones.csv");
 }
 
 /// Pebbles of a bed all of whose stones have shapes, as many as those have that were replaced.
-double pebbles_of_all(const Summary& adapted, const Work& work) {
+double pebbles_of_all(const Json& adapted, const Work& work) {
   double replaced = 0;
-  for (const Result& r : adapted.measures)
-    if (r.name.ends_with(".replaced")) replaced += r.value;
+  for (const auto& [name, result] : adapted["measures"].items())
+    if (name.ends_with(".replaced")) replaced += result["value"].get<double>();
   return replaced > 0 ? work.stones * (work.pebbles - (work.stones - replaced)) / replaced : work.pebbles;
 }
 
-void print_results(const ApssOptions& o, const std::string& stage, const Summary& adapted) {
+void print_results(const ApssOptions& o, const std::string& stage, const Json& adapted) {
   const Work work = work_of(adapted);
   fmt::print("adapted bed: {}, {:.0f} stones, {:.0f} pebbles, {:.0f} contacts\n", duration_text(work.seconds),
              work.stones, work.pebbles, work.contacts);
   fmt::print("  {:.0f} % fewer pebbles than with shapes everywhere\n",
              100 * (1 - work.pebbles / pebbles_of_all(adapted, work)));
   if (o.reference) {
-    const Summary full = run_in(o, "reference", o.overrides);
-    const Work all = work_of(full);
+    const Work all = work_of(results_in(o, "reference", o.overrides, o.run.resume));
     fmt::print("reference:   {}, {:.0f} stones, {:.0f} pebbles, {:.0f} contacts\n",
                duration_text(all.seconds), all.stones, all.pebbles, all.contacts);
     fmt::print("saved: {:.0f} % of the time, {:.0f} % of the pebbles, {:.0f} % of the contacts\n",
                100 * (1 - work.seconds / all.seconds), 100 * (1 - work.pebbles / all.pebbles),
                100 * (1 - work.contacts / all.contacts));
   }
-  for (const Result& r : adapted.measures)
-    if (r.name.ends_with(".replaced") || r.name.ends_with(".share") || r.name.starts_with(stage + "."))
-      fmt::print("  {:28} {:>12.6g} {}\n", r.name, r.value, si_unit_of(r.dimension));
+  for (const auto& [name, result] : adapted["measures"].items())
+    if (name.ends_with(".replaced") || name.ends_with(".share") || name.starts_with(stage + "."))
+      if (const auto found = find_in(adapted, name))
+        fmt::print("  {:28} {:>12.6g} {}\n", name, found->value, found->unit);
 }
 
 }  // namespace
@@ -147,7 +151,10 @@ int apss_command(int argc, char** argv) {
   app.add_option("--threads", o.run.threads, "number of threads; 0: one for each core")
       ->check(CLI::Range(0, 4096));
   app.add_flag("--quiet", o.run.quiet, "print nothing but errors");
+  ResumeOptions resume;
+  resume.add_to(app);
   if (const auto code = parse(app, argc, argv)) return *code;
+  resume.apply(o.run);
   if (o.out.empty())
     o.out = fs::path("out") / (fs::absolute(o.file).parent_path().filename().string() + "-apss");
   o.run.progress = stderr;
@@ -169,7 +176,7 @@ int apss_command(int argc, char** argv) {
   for (const std::string& value : overrides) fmt::print(" \\\n    --set '{}'", value);
   fmt::print("\n");
   if (o.prepare_only) return 0;
-  print_results(o, stage, run_in(o, "adapted", overrides));
+  print_results(o, stage, results_in(o, "adapted", overrides, o.run.resume));
   fmt::print("results: {}\n", o.out.string());
   return 0;
 }

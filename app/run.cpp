@@ -2,9 +2,9 @@
 #include "lab/run.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <csignal>
 
 #include "base/error.h"
 #include "command_line.h"
@@ -12,29 +12,11 @@
 #include "io/echo.h"
 #include "io/progress.h"
 #include "kept.h"
-#include "lab/study/results.h"
 #include "lab/track/track_run.h"
+#include "resumable.h"
 
 namespace trackbed {
 namespace {
-
-volatile std::sig_atomic_t stop_signal = 0;
-
-/// The first signal lets the run leave a checkpoint; a second one ends it at once.
-void stop_on_signals() {
-  for (const int signal : {SIGTERM, SIGINT})
-    std::signal(signal, [](int number) {
-      stop_signal = number;
-      std::signal(number, SIG_DFL);
-    });
-}
-
-/// Ends as the signal would have ended it, so that whoever sent it sees that.
-[[noreturn]] void end_by_signal() {
-  std::signal(stop_signal, SIG_DFL);
-  std::raise(stop_signal);
-  std::abort();  // not reached
-}
 
 /// What most people look for first; those of walls and the rest are in summary.json.
 void print_results(const Summary& summary) {
@@ -63,23 +45,6 @@ void print_results(const Summary& summary) {
     fmt::print("  {:{}}  {:>12.6g} {}\n", r.name, width, r.value, si_unit_of(r.dimension));
 }
 
-double quantity(const std::string& text, Dimension dimension, const char* option) {
-  const auto value = parse_quantity(text, dimension);
-  if (const auto* wrong = std::get_if<std::string>(&value))
-    throw InputError(fmt::format("{} {}: {}", option, text, *wrong));
-  return std::get<double>(value);
-}
-
-/// Whether the run was to be taken up again and the folder has the results of this very case.
-bool is_finished(const nlohmann::ordered_json& input, const RunOptions& options) {
-  if (!options.resume || std::filesystem::exists(options.out / "checkpoint")) return false;
-  Member alone;  // what its folder says is judged as in a study
-  alone.input = input;
-  if (outcome_of(alone, options.out).status != MemberStatus::done) return false;
-  fmt::print("{} holds the results of this case already\n", options.out.string());
-  return true;
-}
-
 /// The passage of a train takes minutes: it is not kept on its way, and begins anew.
 int run_track_case(const Document& document, const RunOptions& options, const std::filesystem::path& keep) {
   TrackCaseInput in;
@@ -100,7 +65,7 @@ int run_command(int argc, char** argv) {
   std::filesystem::path file, out, keep;
   std::vector<std::string> overrides;
   RunOptions options;
-  std::string checkpoint_every = "10 min";
+  ResumeOptions resume;
   CLI::App app("Runs a case and writes its results.", "trackbed run");
   app.add_option("case", file, "the case file (TOML)")->required();
   app.add_option("--out", out, "folder of the results; default: out/NAME of the case's folder");
@@ -109,14 +74,7 @@ int run_command(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "number of threads; 0: one for each core")
       ->check(CLI::Range(0, 4096));
-  app.add_flag(
-      "--resume", options.resume,
-      "go on from the last checkpoint in the folder of the results; from the beginning where there is "
-      "none");
-  app.add_option("--checkpoint-every", checkpoint_every,
-                 "wall time between two checkpoints; there is one at each stage's end and when the run is "
-                 "stopped (SIGTERM, SIGINT)")
-      ->capture_default_str();
+  resume.add_to(app);
   app.add_option("--keep", keep,
                  "folder where the reduced ground of a track is kept; default: ~/.cache/trackbed");
   app.add_flag("--quiet", options.quiet, "print nothing but errors");
@@ -127,21 +85,13 @@ int run_command(int argc, char** argv) {
                     ? std::filesystem::path("out") / std::filesystem::absolute(file).parent_path().filename()
                     : out;
   options.progress = stderr;
-  options.checkpoint_every = quantity(checkpoint_every, Dimension::time, "--checkpoint-every");
+  resume.apply(options);
   if (is_track_case(document))
     return run_track_case(document, options, keep.empty() ? default_cache() : keep);
   CaseInput experiment;
   document.read(experiment);
   if (is_finished(echo(experiment), options)) return 0;
-  options.stop = [] { return stop_signal != 0; };
-  stop_on_signals();
-  Summary summary;
-  try {
-    summary = run(document, experiment, options);
-  } catch (const Stopped& stopped) {
-    fmt::print(stderr, "trackbed: {}\n", stopped.what());
-    end_by_signal();
-  }
+  const Summary summary = run_until_signal(document, experiment, options);
   if (options.quiet) return 0;
   fmt::print("{}: {} stages in {}\n", experiment.title, summary.stages.size(), duration_text(summary.wall));
   print_results(summary);
