@@ -174,7 +174,7 @@ TEST(ReducedSoil, FollowsTheFullModelUnderMovingAxlesAndABlow) {
   expect_columns_to_converge(0.15, {0, 1, 3});
 }
 TEST(ReducedSoil, long_FollowsTheFullModelAt75Millimetres) {
-  expect_columns_to_converge(0.075, {0, 3});
+  expect_columns_to_converge(0.075, {0, 3, 4});  // three leave 2 % here, where the ground is deeper too
 }
 
 TEST(ReducedSoil, FollowsTheFullModelBesideDashpots) {
