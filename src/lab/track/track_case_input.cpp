@@ -91,8 +91,7 @@ void declare(Fields& f, GroundInput& in) {
              "b of C = a M + b K; not published");
   f.integer("krylov", in.krylov, {.at_least = 0, .at_most = 8},
             "shapes beside the static one for each pressure shape of a sleeper, for reduced ground; with 4 "
-            "it follows "
-            "blows of 10 ms within 1 % at 75 mm, with 3 within 2 %");
+            "it follows blows of 10 ms within 1 % at 75 mm, with 3 within 2 %");
   f.quantity("window", in.window, Dimension::length, positive,
              "length of ground in which a sleeper's shapes are worked out, for reduced ground");
 }
