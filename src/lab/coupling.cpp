@@ -220,6 +220,16 @@ double change_of(const std::vector<double>& before, const std::vector<double>& n
   return most / std::ranges::max(now);
 }
 
+/// Why the sleepers of a range press on nothing.
+std::string nothing_presses(const std::vector<CouplingRound>& all, std::size_t range) {
+  const auto last = std::find_if(all.rbegin(), all.rend(), [&](const auto& r) { return r.range == range; });
+  if (last == all.rend()) return "the sleepers do not press on the ground: there is nothing to couple";
+  return fmt::format(
+      "round {}: sleepers hang above a bed that has settled by {:.3g} mm under {:.4g} kN; the rails bear the "
+      "train, and there is nothing to couple",
+      last->round, 1e3 * last->curve.settlement, 1e-3 * last->load);
+}
+
 }  // namespace
 
 std::vector<CouplingRound> couple(double tolerance, int rounds, double reach, const Passage& passage,
@@ -232,8 +242,7 @@ std::vector<CouplingRound> couple(double tolerance, int rounds, double reach, co
   for (int round = 1; round <= rounds; ++round) {
     std::vector<PressHistory> beds;
     for (std::size_t range = 0; range < peaks.size(); ++range) {
-      if (!(loads[range].value() > 0))
-        throw RunError("the sleepers do not press on the ground: there is nothing to couple");
+      if (!(loads[range].value() > 0)) throw RunError(nothing_presses(all, range));
       beds.push_back(press(range, reach * loads[range].value(), round));
     }
     const std::vector<std::vector<double>> next = passage(beds, round);

@@ -56,6 +56,22 @@ TEST(Couple, TakesTheChordWhereRoundsSwing) {
   EXPECT_NEAR(rounds.back().peak, 80e3, 1);
 }
 
+TEST(Couple, SleepersThatComeToHangAreTold) {
+  try {
+    couple(
+        0.01, 5, 1,
+        [&](const std::vector<PressHistory>& beds, int) {
+          return std::vector<std::vector<double>>{{beds.empty() ? 80e3 : 0.0}};
+        },
+        [&](std::size_t, double force, int) { return line(2e8, force, 7e-3); });
+    FAIL() << "nothing presses";
+  } catch (const RunError& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "round 1: sleepers hang above a bed that has settled by 7 mm under 80 kN; the rails bear the "
+              "train, and there is nothing to couple");
+  }
+}
+
 TEST(Couple, WhatDoesNotSettleDownFails) {
   const auto passage = [](const std::vector<PressHistory>&, int round) {
     return std::vector<std::vector<double>>{{round % 2 == 0 ? 80e3 : 90e3}};
