@@ -83,10 +83,7 @@ Json results_in(const ApssOptions& o, const std::string& folder, const std::vect
   RunOptions options = o.run;
   options.out = o.out / folder;
   if (may_take)
-    if (auto found = results_of(echo(experiment), options.out)) {
-      fmt::print("{} holds the results of this case already\n", options.out.string());
-      return *found;
-    }
+    if (const auto found = results_of(echo(experiment), options.out)) return *found;
   return to_json(run_until_signal(document, experiment, options));
 }
 

@@ -60,13 +60,8 @@ std::optional<nlohmann::ordered_json> results_of(const nlohmann::ordered_json& i
   alone.input = input;
   Outcome outcome = outcome_of(alone, folder);
   if (outcome.status != MemberStatus::done) return std::nullopt;
+  fmt::print("{} holds the results of this case already\n", folder.string());
   return std::move(outcome.summary);
-}
-
-bool is_finished(const nlohmann::ordered_json& input, const RunOptions& options) {
-  if (!options.resume || !results_of(input, options.out)) return false;
-  fmt::print("{} holds the results of this case already\n", options.out.string());
-  return true;
 }
 
 Summary run_until_signal(const Document& document, const CaseInput& experiment, RunOptions options) {

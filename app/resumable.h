@@ -22,12 +22,9 @@ class ResumeOptions {
   std::string every_ = "10 min";
 };
 
-/// summary.json of a folder that holds the results of this very input.
+/// summary.json of a folder that holds the results of this very input already; says so.
 std::optional<nlohmann::ordered_json> results_of(const nlohmann::ordered_json& input,
                                                  const std::filesystem::path& folder);
-
-/// Whether the run was to be taken up again and is over already; says so.
-bool is_finished(const nlohmann::ordered_json& input, const RunOptions& options);
 
 /// As run. SIGTERM or SIGINT lets it leave a checkpoint; then the process ends as the signal would have ended
 /// it. A second one ends it at once.

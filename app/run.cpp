@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 
-#include "base/error.h"
 #include "command_line.h"
 #include "commands.h"
 #include "io/echo.h"
@@ -49,7 +48,7 @@ void print_results(const Summary& summary) {
 int run_track_case(const Document& document, const RunOptions& options, const std::filesystem::path& keep) {
   TrackCaseInput in;
   document.read(in);
-  if (is_finished(echo(in), options)) return 0;
+  if (options.resume && results_of(echo(in), options.out)) return 0;
   const Summary summary = run_track(document, in, options, keep);
   if (options.quiet) return 0;
   fmt::print("{}: {}\n", in.title, duration_text(summary.wall));
@@ -90,7 +89,7 @@ int run_command(int argc, char** argv) {
     return run_track_case(document, options, keep.empty() ? default_cache() : keep);
   CaseInput experiment;
   document.read(experiment);
-  if (is_finished(echo(experiment), options)) return 0;
+  if (options.resume && results_of(echo(experiment), options.out)) return 0;
   const Summary summary = run_until_signal(document, experiment, options);
   if (options.quiet) return 0;
   fmt::print("{}: {} stages in {}\n", experiment.title, summary.stages.size(), duration_text(summary.wall));

@@ -45,9 +45,9 @@ class Bed {
     stages.erase(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(first_));
     Simulation sim = sim_;
     carry(sim, stages, bed, out);
-    const PressHistory history = read_series(out / "series.csv");
+    const PressHistory history = of_whole_sleeper(read_series(out / "series.csv"), in_.share, in_.below);
     check_curve(history, force * in_.share, out);
-    return of_whole_sleeper(history, in_.share, in_.below);
+    return history;
   }
 
  private:
