@@ -6,6 +6,7 @@
 
 #include "dem/pair_motion.h"
 #include "dem/search.h"
+#include "dem/two_stones.h"
 
 namespace trackbed {
 namespace {
@@ -15,7 +16,6 @@ using Index = std::size_t;
 /// Per-thread memory of a search, kept from call to call so that a step allocates nothing.
 struct Scratch {
   std::vector<PebblePair> found;
-  std::vector<std::pair<int, int>> stack;
   std::vector<ContactMemory> memory;
 };
 
@@ -28,65 +28,21 @@ bool is_before(const PebblePair& x, const PebblePair& y) {
   return x.a != y.a ? x.a < y.a : x.b < y.b;
 }
 
-/// Two stones as the search sees them, in the frame of stone i.
-struct TwoStones {
-  const ClumpTemplate &i, &j;
-  double scale_i, scale_j;
-  Vec3 offset;
-  Mat3 turn;
-
-  TwoStones(const Model& model, const Clumps& c, const ClumpPair& pair, const Relative& pose)
-      : i(model.templates[static_cast<Index>(c.shape[static_cast<Index>(pair.i)])]),
-        j(model.templates[static_cast<Index>(c.shape[static_cast<Index>(pair.j)])]),
-        scale_i(c.scale[static_cast<Index>(pair.i)]),
-        scale_j(c.scale[static_cast<Index>(pair.j)]),
-        offset(pose.offset),
-        turn(scale_j * pose.turn.toRotationMatrix()) {}
-
-  template <class Sphere>
-  bool are_within(double skin, const Sphere& a, const Sphere& b) const {
-    const double reach = scale_i * a.radius + scale_j * b.radius + skin;
-    return (offset + turn * b.centre - scale_i * a.centre).squaredNorm() <= reach * reach;
-  }
-
-  /// Neither tree has more than its root.
-  bool are_simple() const { return i.tree.nodes.size() == 1 && j.tree.nodes.size() == 1; }
-};
-
-/// Pebble pairs with less than the skin between them, by a walk of the two trees against each other.
+/// Pebble pairs with no more than the skin between them.
 void walk_trees(const TwoStones& two, double skin, Scratch& s) {
   s.found.clear();
-  s.stack.assign(1, {0, 0});
-  while (!s.stack.empty()) {
-    const auto [a, b] = s.stack.back();
-    s.stack.pop_back();
-    const SphereTree::Node& na = two.i.tree.nodes[static_cast<Index>(a)];
-    const SphereTree::Node& nb = two.j.tree.nodes[static_cast<Index>(b)];
-    if (!two.are_within(skin, na.bound, nb.bound)) continue;
-    const bool i_is_larger = two.scale_i * na.bound.radius >= two.scale_j * nb.bound.radius;
-    if (na.is_leaf() && nb.is_leaf()) {
-      for (int l = nb.first; l < nb.first + nb.count; ++l)
-        for (int k = na.first; k < na.first + na.count; ++k)
-          if (two.are_within(skin, two.i.pebbles[static_cast<Index>(k)],
-                             two.j.pebbles[static_cast<Index>(l)]))
-            s.found.push_back({k, l});
-    } else if (nb.is_leaf() || (!na.is_leaf() && i_is_larger)) {
-      s.stack.emplace_back(na.right, b);
-      s.stack.emplace_back(a + 1, b);
-    } else {
-      s.stack.emplace_back(a, nb.right);
-      s.stack.emplace_back(a, b + 1);
-    }
-  }
+  two.any_within(skin, [&](int a, int b) {
+    s.found.push_back({a, b});
+    return false;
+  });
   std::sort(s.found.begin(), s.found.end(), is_before);
 }
 
-/// Those of a list with less than the skin between them.
+/// Those of a list with no more than the skin between them.
 void prune(const TwoStones& two, double skin, const std::vector<PebblePair>& list, Scratch& s) {
   s.found.clear();
   for (const PebblePair& p : list)
-    if (two.are_within(skin, two.i.pebbles[static_cast<Index>(p.a)], two.j.pebbles[static_cast<Index>(p.b)]))
-      s.found.push_back(p);
+    if (two.are_within(skin, p.a, p.b)) s.found.push_back(p);
 }
 
 /// Adds the candidates that touched in the last step, however far they are now: their contacts have yet to be
@@ -165,7 +121,7 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
     return false;
   }
   const double apart = now.offset.norm() - work.bound[i] - work.bound[j];
-  const TwoStones two(model, c, pair, now);
+  const TwoStones two(model, c, pair.i, pair.j, now);
   Skin skin = skin_of(state, work, speed_of(state, work, i) + speed_of(state, work, j));
   if (two.are_simple()) skin.inner = skin.outer;  // nothing to choose from
   scratch().found.clear();
@@ -189,7 +145,9 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
 void list_candidates(const Model& model, const State& state, const Workspace& work, const PairBlock& block,
                      PairGeometry& geometry) {
   const Clumps& c = state.clumps;
-  const auto is_centred = [&](int pebble) { return xyz(work.pebbles[static_cast<Index>(pebble)]).isZero(0); };
+  const auto is_centred = [&](Index clump) {
+    return work.is_centred[static_cast<Index>(c.shape[clump])] != 0;
+  };
   geometry.candidates.clear();
   geometry.is_centred = true;
   for (Index p = 0; p < block.pairs.size(); ++p) {
@@ -200,10 +158,10 @@ void list_candidates(const Model& model, const State& state, const Workspace& wo
     const int first_b = work.first_pebble[static_cast<Index>(c.shape[j])];
     const int sum_j = work.sum_of_pair[static_cast<Index>(geometry.first_pair) + p];
     const int properties = model.pairs.index(c.material[i], c.material[j]);
+    geometry.is_centred = geometry.is_centred && is_centred(i) && is_centred(j);
     for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
       const int a = first_a + block.keys[k].a, b = first_b + block.keys[k].b;
       geometry.candidates.push_back({pair.i, pair.j, a, b, sum_j, properties});
-      geometry.is_centred = geometry.is_centred && is_centred(a) && is_centred(b);
     }
   }
 }

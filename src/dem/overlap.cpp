@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <utility>
-#include <vector>
+
+#include "dem/two_stones.h"
 
 namespace trackbed {
 namespace {
@@ -12,36 +12,8 @@ using Index = std::size_t;
 
 bool stones_meet(const Model& model, const Clumps& c, int i, int j, double clearance) {
   const Index a = static_cast<Index>(i), b = static_cast<Index>(j);
-  const ClumpTemplate& ta = model.templates[static_cast<Index>(c.shape[a])];
-  const ClumpTemplate& tb = model.templates[static_cast<Index>(c.shape[b])];
-  const Pose pa{c.position[a], c.orientation[a]}, pb{c.position[b], c.orientation[b]};
-  std::vector<std::pair<int, int>> stack{{0, 0}};
-  while (!stack.empty()) {
-    const auto [ka, kb] = stack.back();
-    stack.pop_back();
-    const SphereTree::Node& na = ta.tree.nodes[static_cast<Index>(ka)];
-    const SphereTree::Node& nb = tb.tree.nodes[static_cast<Index>(kb)];
-    const double near = c.scale[a] * na.bound.radius + c.scale[b] * nb.bound.radius + clearance;
-    const Vec3 apart = pb.to_world(c.scale[b] * nb.bound.centre) - pa.to_world(c.scale[a] * na.bound.centre);
-    if (apart.squaredNorm() >= near * near) continue;
-    if (!na.is_leaf()) {
-      stack.emplace_back(na.right, kb);
-      stack.emplace_back(ka + 1, kb);
-    } else if (!nb.is_leaf()) {
-      stack.emplace_back(ka, nb.right);
-      stack.emplace_back(ka, kb + 1);
-    } else {
-      for (int k = na.first; k < na.first + na.count; ++k)
-        for (int l = nb.first; l < nb.first + nb.count; ++l) {
-          const Pebble& p = ta.pebbles[static_cast<Index>(k)];
-          const Pebble& q = tb.pebbles[static_cast<Index>(l)];
-          const double reach = c.scale[a] * p.radius + c.scale[b] * q.radius + clearance;
-          const Vec3 d = pb.to_world(c.scale[b] * q.centre) - pa.to_world(c.scale[a] * p.centre);
-          if (d.squaredNorm() < reach * reach) return true;
-        }
-    }
-  }
-  return false;
+  const Relative pose = relative_pose(c.position[a], c.orientation[a], c.position[b], c.orientation[b]);
+  return TwoStones(model, c, i, j, pose).any_within(clearance, [](int, int) { return true; });
 }
 
 bool stone_meets_wall(const Model& model, const State& state, int clump, int wall, double clearance) {

@@ -262,7 +262,10 @@ void rebuild_wall_pairs(const Model& model, State& state, Workspace& work) {
 void list_pebbles(const Model& model, Workspace& work) {
   work.pebbles.clear();
   work.first_pebble.clear();
+  work.is_centred.clear();
   for (const ClumpTemplate& t : model.templates) {
+    work.is_centred.push_back(
+        std::all_of(t.pebbles.begin(), t.pebbles.end(), [](const Pebble& p) { return p.centre.isZero(0); }));
     work.first_pebble.push_back(static_cast<int>(work.pebbles.size()));
     for (const Pebble& p : t.pebbles) work.pebbles.push_back(row_of(p.centre, p.radius));
   }

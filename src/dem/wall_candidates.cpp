@@ -116,7 +116,7 @@ void append_candidates(const Model& model, const State& state, double skin, cons
     const Vec3 centre = place(bound.centre);
     const double radius = scale * bound.radius + skin;
     if (wall.is_plane) return centre.z() <= radius;
-    const Sphere& all = wall.tree.nodes[0].bound;
+    const Sphere all = wall.tree.bound();
     return (all.centre - centre).squaredNorm() <= (all.radius + radius) * (all.radius + radius);
   };
   stone.tree.any(is_near, [&](int pebble) {

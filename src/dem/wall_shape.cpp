@@ -47,18 +47,19 @@ WallShape make_mesh_wall(std::string name, const TriangleMesh& mesh, const std::
   WallShape shape;
   for (std::size_t k = 0; k < mesh.facets.size(); ++k) {
     const auto [a, b, c] = mesh.corners(k);
-    const double area2 = (b - a).cross(c - a).norm();
+    const Vec3 across = (b - a).cross(c - a);
+    const double area2 = across.norm();
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     if (!(area2 > 1e-12 * longest * longest))
       throw InputError("wall " + name + ": facet " + std::to_string(k) + " has no area");
-    facets.push_back({a, b, c, group_of_facet.empty() ? 0 : group_of_facet[k]});
+    facets.push_back({a, b, c, across / area2, group_of_facet.empty() ? 0 : group_of_facet[k]});
     bounds.push_back(bound_of(facets.back()));
     shape.reach = std::max({shape.reach, a.norm(), b.norm(), c.norm()});
   }
   shape.name = std::move(name);
   shape.mesh = mesh;
-  shape.tree = build_sphere_tree(bounds);
-  for (int k : shape.tree.order) shape.facets.push_back(facets[static_cast<std::size_t>(k)]);
+  shape.tree = SphereTree(bounds);
+  for (int k : shape.tree.order()) shape.facets.push_back(facets[static_cast<std::size_t>(k)]);
   return shape;
 }
 
@@ -112,7 +113,9 @@ int touching_points(const WallShape& shape, const int* near_facets, int n_near, 
   std::array<Near, most> near;
   int n = 0;
   for (int k = 0; k < n_near; ++k) {
-    const Vec3 q = closest_point(shape.facets[static_cast<std::size_t>(near_facets[k])], centre);
+    const Facet& facet = shape.facets[static_cast<std::size_t>(near_facets[k])];
+    if (facet.is_beyond(centre, radius)) continue;
+    const Vec3 q = closest_point(facet, centre);
     const double distance2 = (q - centre).squaredNorm();
     if (!(distance2 < radius * radius)) continue;
     const Near met{q, std::sqrt(distance2), near_facets[k]};

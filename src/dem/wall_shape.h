@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,11 @@ namespace trackbed {
 /// A triangle, ready for closest-point questions.
 struct Facet {
   Vec3 a, b, c;  // [m], wall frame
+  Vec3 normal;   // of its plane, of length 1
   int group;     // named part of the wall it belongs to
+
+  /// Whether the facet's plane, and so the facet, is farther from a point than `reach` [m].
+  bool is_beyond(const Vec3& p, double reach) const { return std::abs(normal.dot(p - a)) > reach; }
 };
 
 /// A wall in its own frame: a triangle mesh (two-sided), or the unbounded plane z = 0 with the stones above.
@@ -67,7 +72,9 @@ bool any_near_facet(const WallShape& shape, const Vec3& centre, double radius, V
         return (bound.centre - centre).squaredNorm() <= near * near;
       },
       [&](int f) {
-        const Vec3 q = closest_point(shape.facets[static_cast<std::size_t>(f)], centre);
+        const Facet& facet = shape.facets[static_cast<std::size_t>(f)];
+        if (facet.is_beyond(centre, radius)) return false;
+        const Vec3 q = closest_point(facet, centre);
         const double distance2 = (q - centre).squaredNorm();
         return distance2 <= radius * radius && visit(f, distance2);
       });

@@ -63,8 +63,8 @@ struct PairGeometry {
   std::vector<NearPebbles> near;      // empty while no pair has needed one
   std::vector<double> due;            // sum of both clumps' travel at which their motion must be measured [m]
   std::vector<Candidate> candidates;  // beside the keys
-  bool is_centred = false;            // each candidate's pebbles stand in the centres of their stones
-  int first_pair = 0;                 // number of its first pair, through all blocks
+  bool is_centred = false;  // all pebbles of stones with candidates stand in the centres of their stones
+  int first_pair = 0;       // number of its first pair, through all blocks
   Watch watch;
 };
 
@@ -135,6 +135,7 @@ struct Workspace {
   std::vector<StoneMotion> motion;
   std::vector<Row> pebbles;             // centre and radius, at scale 1, of all templates one after the other
   std::vector<int> first_pebble;        // of each template
+  std::vector<char> is_centred;         // of each template: all its pebbles stand in its centre of mass
   std::vector<double> bound;            // bounding radius [m]
   std::vector<double> travel;           // length of way of its farthest point since the start [m]
   std::vector<Vec3> position_at_build;  // when the pairs were made [m]

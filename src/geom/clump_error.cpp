@@ -28,19 +28,15 @@ double covered_length(Intervals& intervals) {
 
 /// Distance from p to the nearest of the spheres' surfaces; negative inside a sphere, then the deepest
 /// counts.
-double distance_to_union(const Vec3& p, const std::vector<Sphere>& spheres, const SphereTree& tree,
-                         int node = 0, double best = std::numeric_limits<double>::infinity()) {
-  const SphereTree::Node& n = tree.nodes[static_cast<std::size_t>(node)];
-  if ((p - n.bound.centre).norm() - n.bound.radius >= best) return best;
-  if (n.is_leaf()) {
-    for (int k = n.first; k < n.first + n.count; ++k) {
-      const Sphere& s = spheres[static_cast<std::size_t>(tree.order[static_cast<std::size_t>(k)])];
-      best = std::min(best, (p - s.centre).norm() - s.radius);
-    }
-    return best;
-  }
-  best = distance_to_union(p, spheres, tree, node + 1, best);
-  return distance_to_union(p, spheres, tree, n.right, best);
+double distance_to_union(const Vec3& p, const std::vector<Sphere>& spheres, const SphereTree& tree) {
+  double best = std::numeric_limits<double>::infinity();
+  tree.approach(
+      p, [&] { return best; },
+      [&](int k) {
+        const Sphere& s = spheres[static_cast<std::size_t>(tree.order()[static_cast<std::size_t>(k)])];
+        best = std::min(best, (p - s.centre).norm() - s.radius);
+      });
+  return best;
 }
 
 /// As many lines as a few million intervals allow: more than enough for 0.1 %.
@@ -94,7 +90,7 @@ double union_volume(const std::vector<Pebble>& pebbles, int lines) {
 ClumpError clump_error(const TriangleMesh& solid, const std::vector<Pebble>& pebbles) {
   std::vector<Sphere> spheres;
   for (const Pebble& p : pebbles) spheres.push_back({p.centre, p.radius});
-  const SphereTree tree = build_sphere_tree(spheres);
+  const SphereTree tree(spheres);
   ClumpError error;
   error.volume_ratio = union_volume(pebbles, affordable_lines(pebbles)) / mass_properties(solid).volume;
   for (const SurfaceSample& sample : sample_surface(solid, surface_points)) {

@@ -22,9 +22,9 @@ ClumpTemplate make_clump_template(std::string name, std::vector<Pebble> pebbles,
 
   ClumpTemplate t;
   t.name = std::move(name);
-  t.tree = build_sphere_tree(spheres);
+  t.tree = SphereTree(spheres);
   t.smallest_radius = std::numeric_limits<double>::infinity();
-  for (int k : t.tree.order) {
+  for (int k : t.tree.order()) {
     const Pebble& p = pebbles[static_cast<std::size_t>(k)];
     t.pebbles.push_back(p);
     t.bounding_radius = std::max(t.bounding_radius, p.centre.norm() + p.radius);

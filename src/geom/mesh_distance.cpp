@@ -84,38 +84,21 @@ std::vector<Vec3> vertex_normals(const TriangleMesh& mesh) {
 
 MeshDistance::MeshDistance(const TriangleMesh& mesh)
     : mesh_(mesh),
-      tree_(build_sphere_tree(bounds_of_facets(mesh))),
+      tree_(bounds_of_facets(mesh)),
       facet_normals_(facet_normals(mesh)),
       corner_normals_(vertex_normals(mesh)),
       edge_normals_(edge_normals(mesh, facet_normals_)) {}
 
 MeshDistance::Nearest MeshDistance::nearest(const Vec3& p) const {
   Nearest best{std::numeric_limits<double>::infinity(), p, 0, 6};
-  const auto least = [&](int node) {
-    const Sphere& s = tree_.nodes[static_cast<std::size_t>(node)].bound;
-    return std::max(0.0, (p - s.centre).norm() - s.radius);
-  };
-  std::array<std::pair<double, int>, 128> open;  // depth first; the tree is balanced, so 128 is plenty
-  std::size_t top = 0;
-  open[top++] = {least(0), 0};
-  while (top) {
-    const auto [bound, node] = open[--top];
-    if (bound * bound >= best.distance2) continue;
-    const SphereTree::Node& n = tree_.nodes[static_cast<std::size_t>(node)];
-    if (n.is_leaf()) {
-      for (int k = n.first; k < n.first + n.count; ++k) {
-        const auto f = static_cast<std::size_t>(tree_.order[static_cast<std::size_t>(k)]);
+  tree_.approach(
+      p, [&] { return std::sqrt(best.distance2); },
+      [&](int item) {
+        const auto f = static_cast<std::size_t>(tree_.order()[static_cast<std::size_t>(item)]);
         const auto [q, feature] = nearest_in_triangle(mesh_.corners(f), p);
         const double d2 = (p - q).squaredNorm();
         if (d2 < best.distance2) best = {d2, q, f, feature};
-      }
-    } else {
-      std::pair near{least(node + 1), node + 1}, far{least(n.right), n.right};
-      if (far < near) std::swap(near, far);
-      open[top++] = far;
-      open[top++] = near;
-    }
-  }
+      });
   return best;
 }
 

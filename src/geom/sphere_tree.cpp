@@ -1,56 +1,78 @@
 #include "geom/sphere_tree.h"
 
-#include <algorithm>
 #include <numeric>
 
 namespace trackbed {
 namespace {
 
-/// Sphere around the given items: centred in their box, as large as needed (a few per cent above the least).
-Sphere bound_of(const std::vector<Sphere>& items, const int* first, const int* last) {
-  Eigen::AlignedBox3d box;
-  for (const int* k = first; k != last; ++k) {
-    const Sphere& s = items[static_cast<std::size_t>(*k)];
-    box.extend(s.centre - Vec3::Constant(s.radius));
-    box.extend(s.centre + Vec3::Constant(s.radius));
-  }
-  Sphere bound{box.center(), 0};
-  for (const int* k = first; k != last; ++k) {
-    const Sphere& s = items[static_cast<std::size_t>(*k)];
-    bound.radius = std::max(bound.radius, (s.centre - bound.centre).norm() + s.radius);
-  }
-  return bound;
-}
+using Index = std::size_t;
 
-void split(SphereTree& tree, const std::vector<Sphere>& items, int first, int count) {
-  const std::size_t node = tree.nodes.size();
-  int* begin = tree.order.data() + first;
-  tree.nodes.push_back({bound_of(items, begin, begin + count), first, count, 0});
-  if (count <= SphereTree::leaf_size) return;
+/// Halves items until eight or fewer are left; all but the last of the parts that become bounds are full.
+void sort_by_place(const std::vector<Sphere>& items, int* begin, int count) {
+  int full = 1;
+  while (full * SphereTree::width < count) full *= SphereTree::width;
+  if (count <= 2) return;
 
   Eigen::AlignedBox3d centres;
-  for (int k = 0; k < count; ++k) centres.extend(items[static_cast<std::size_t>(begin[k])].centre);
+  for (int k = 0; k < count; ++k) centres.extend(items[static_cast<Index>(begin[k])].centre);
   Eigen::Index axis = 0;
   centres.sizes().maxCoeff(&axis);
-  const int half = count / 2;
+  const int half = std::max(1, (count / 2 + full / 2) / full) * full;
   std::nth_element(begin, begin + half, begin + count, [&](int a, int b) {
-    const double ca = items[static_cast<std::size_t>(a)].centre[axis];
-    const double cb = items[static_cast<std::size_t>(b)].centre[axis];
+    const double ca = items[static_cast<Index>(a)].centre[axis];
+    const double cb = items[static_cast<Index>(b)].centre[axis];
     return ca != cb ? ca < cb : a < b;
   });
-  split(tree, items, first, half);
-  tree.nodes[node].right = static_cast<int>(tree.nodes.size());
-  split(tree, items, first + half, count - half);
+  sort_by_place(items, begin, half);
+  sort_by_place(items, begin + half, count - half);
+}
+
+SphereTree::Level level_of(const std::vector<Sphere>& spheres) {
+  SphereTree::Level level;
+  level.count = static_cast<int>(spheres.size());
+  for (auto* column : {&level.x, &level.y, &level.z, &level.radius})
+    column->reserve(spheres.size() + SphereTree::width);
+  for (const Sphere& s : spheres) {
+    level.x.push_back(s.centre.x());
+    level.y.push_back(s.centre.y());
+    level.z.push_back(s.centre.z());
+    level.radius.push_back(s.radius);
+  }
+  for (auto* column : {&level.x, &level.y, &level.z, &level.radius})
+    column->resize(spheres.size() + SphereTree::width, 0.0);
+  return level;
+}
+
+/// Sphere around [first, last): centred in their box, as large as needed (a few per cent above the least).
+Sphere bound_of(const Sphere* first, const Sphere* last) {
+  Eigen::AlignedBox3d box;
+  for (const Sphere* s = first; s != last; ++s) {
+    box.extend(s->centre - Vec3::Constant(s->radius));
+    box.extend(s->centre + Vec3::Constant(s->radius));
+  }
+  Sphere bound{box.center(), 0};
+  for (const Sphere* s = first; s != last; ++s)
+    bound.radius = std::max(bound.radius, (s->centre - bound.centre).norm() + s->radius);
+  return bound;
 }
 
 }  // namespace
 
-SphereTree build_sphere_tree(const std::vector<Sphere>& items) {
-  SphereTree tree;
-  tree.order.resize(items.size());
-  std::iota(tree.order.begin(), tree.order.end(), 0);
-  if (!items.empty()) split(tree, items, 0, static_cast<int>(items.size()));
-  return tree;
+SphereTree::SphereTree(const std::vector<Sphere>& items) : order_(items.size()) {
+  if (items.empty()) return;
+  std::iota(order_.begin(), order_.end(), 0);
+  sort_by_place(items, order_.data(), static_cast<int>(items.size()));
+  std::vector<Sphere> spheres, bounds;
+  // A bound is around the items themselves, not around the bounds below it.
+  for (int k : order_) spheres.push_back(items[static_cast<Index>(k)]);
+  levels_.push_back(level_of(spheres));
+  for (Index each = width; levels_.back().count > 1; each *= width) {
+    bounds.clear();
+    for (Index first = 0; first < spheres.size(); first += each)
+      bounds.push_back(
+          bound_of(spheres.data() + first, spheres.data() + std::min(first + each, spheres.size())));
+    levels_.push_back(level_of(bounds));
+  }
 }
 
 }  // namespace trackbed

@@ -10,6 +10,7 @@
 #include "base/hash.h"
 #include "io/files.h"
 #include "io/nearest.h"
+#include "lab/checkpoint.h"
 #include "lab/cyclic_box_case.h"
 #include "lab/kept_bed.h"
 #include "lab/run.h"
@@ -233,6 +234,7 @@ const BenchScene& find_bench_scene(std::string_view name) {
 
 std::filesystem::path kept_bed(const BenchScene& scene, const std::filesystem::path& folder) {
   Hash recipe;
+  recipe.add(state_format);
   recipe.add(std::string_view(scene.text));
   for (const std::string& value : scene.overrides) recipe.add(std::string_view(value));
   if (scene.settled_as) recipe.add(std::string_view(kept_bed(*scene.settled_as, "").string()));

@@ -17,8 +17,6 @@ namespace trackbed {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::string_view magic = "trackbed state 1\n";
-
 std::uint64_t checksum(std::string_view bytes) {
   Hash hash;
   hash.add(bytes.size());
@@ -39,7 +37,7 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 void write_checked(const fs::path& file, std::string_view bytes) {
   const std::uint64_t sum = checksum(bytes);
-  std::string text(magic);
+  std::string text(state_format);
   text.append(reinterpret_cast<const char*>(&sum), sizeof sum);
   text += bytes;
   write_file(file, text, Lasting::on_disk);
@@ -53,9 +51,9 @@ std::optional<std::string> read_checked(const fs::path& file) {
     return std::nullopt;
   }
   std::uint64_t sum = 0;
-  const std::size_t begin = magic.size() + sizeof sum;
-  if (bytes.size() < begin || !bytes.starts_with(magic)) return std::nullopt;
-  std::memcpy(&sum, bytes.data() + magic.size(), sizeof sum);
+  const std::size_t begin = state_format.size() + sizeof sum;
+  if (bytes.size() < begin || !bytes.starts_with(state_format)) return std::nullopt;
+  std::memcpy(&sum, bytes.data() + state_format.size(), sizeof sum);
   if (sum != checksum(std::string_view(bytes).substr(begin))) return std::nullopt;
   return bytes.substr(begin);
 }

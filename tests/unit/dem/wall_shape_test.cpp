@@ -41,12 +41,15 @@ double searched_distance(const Facet& f, const Vec3& p) {
 
 RC_GTEST_PROP(ClosestPoint, AsABruteForceSearchFindsIt, (std::uint64_t seed)) {
   Rng rng(seed, "closest point");
-  const Facet f{any_point(rng, 1), any_point(rng, 1), any_point(rng, 1), 0};
-  const double area2 = (f.b - f.a).cross(f.c - f.a).norm();
+  Facet f{any_point(rng, 1), any_point(rng, 1), any_point(rng, 1), Vec3::Zero(), 0};
+  const Vec3 across = (f.b - f.a).cross(f.c - f.a);
+  const double area2 = across.norm();
   RC_PRE(area2 > 1e-2);
+  f.normal = across / area2;
   const Vec3 p = any_point(rng, 2);
   const Vec3 q = closest_point(f, p);
   RC_ASSERT(std::abs((q - p).norm() - searched_distance(f, p)) < 1e-8);
+  RC_ASSERT(!f.is_beyond(p, (q - p).norm() + 1e-12));
   // It lies on the triangle: its barycentric coordinates add up and none is negative.
   const double u = (f.b - q).cross(f.c - q).norm(), v = (f.c - q).cross(f.a - q).norm(),
                w = (f.a - q).cross(f.b - q).norm();
@@ -54,7 +57,9 @@ RC_GTEST_PROP(ClosestPoint, AsABruteForceSearchFindsIt, (std::uint64_t seed)) {
 }
 
 TEST(ClosestPoint, CornersEdgesAndFace) {
-  const Facet f{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 0};
+  const Facet f{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, Vec3::UnitZ(), 0};
+  EXPECT_FALSE(f.is_beyond({5, 5, -2}, 2));
+  EXPECT_TRUE(f.is_beyond({5, 5, -2}, 1.99));
   EXPECT_EQ(closest_point(f, {-1, -1, 2}), f.a);
   EXPECT_EQ(closest_point(f, {2, -0.5, -2}), f.b);
   EXPECT_EQ(closest_point(f, {-0.5, 2, 0}), f.c);
@@ -139,7 +144,7 @@ TEST(MeshWall, KeepsGroupsAndRefusesFacetsWithoutArea) {
   EXPECT_NEAR(wall.reach, 0.5 * std::sqrt(14.0), 1e-15);
   ASSERT_EQ(wall.facets.size(), 12u);
   for (std::size_t k = 0; k < 12; ++k) {
-    const std::size_t of_user = static_cast<std::size_t>(wall.tree.order[k]);
+    const std::size_t of_user = static_cast<std::size_t>(wall.tree.order()[k]);
     EXPECT_EQ(wall.facets[k].group, groups[of_user]);
     EXPECT_EQ(wall.facets[k].a, box.corners(of_user)[0]);
   }
