@@ -12,6 +12,9 @@ namespace {
 
 using Index = std::size_t;
 
+/// So few that a layer of a strip stays in the cache until its neighbour layer has been worked on.
+constexpr double rows_of_strip = 16;
+
 /// Indices of the stones in their new order.
 std::vector<Index> order_by_place(const std::vector<Vec3>& position) {
   Eigen::AlignedBox3d box;
@@ -23,7 +26,7 @@ std::vector<Index> order_by_place(const std::vector<Vec3>& position) {
   const auto place = [&](const Vec3& x) {
     const Vec3 from = x - box.min();
     const auto row = [&](int a) { return cell > 0 ? std::floor(from[a] / cell) : 0.0; };
-    return std::tuple(row(axis[0]), row(axis[1]), from[axis[2]]);
+    return std::tuple(std::floor(row(axis[1]) / rows_of_strip), row(axis[0]), row(axis[1]), from[axis[2]]);
   };
   std::vector<Index> order(position.size());
   std::iota(order.begin(), order.end(), Index{0});
