@@ -24,9 +24,10 @@ Scratch& scratch() {
   return memory;
 }
 
-bool is_before(const PebblePair& x, const PebblePair& y) {
+// Not a function, which sorting would call through a pointer.
+constexpr auto is_before = [](const PebblePair& x, const PebblePair& y) {
   return x.a != y.a ? x.a < y.a : x.b < y.b;
-}
+};
 
 /// Pebble pairs with no more than the skin between them.
 void walk_trees(const TwoStones& two, double skin, Scratch& s) {

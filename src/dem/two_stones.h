@@ -25,8 +25,11 @@ class TwoStones {
     for (int k = 0; k < 3; ++k) axes_[static_cast<std::size_t>(k)] = row_of(turn.col(k));
   }
 
-  /// Whether both are balls.
-  bool are_simple() const { return i_.tree.top() == 0 && j_.tree.top() == 0; }
+  /// Whether both have so few pebbles that there is nothing to choose from.
+  bool are_simple() const {
+    constexpr std::size_t few = 4;
+    return i_.pebbles.size() <= few && j_.pebbles.size() <= few;
+  }
 
   /// Whether there is no more than the skin [m] between pebble a of the first and b of the second.
   bool are_within(double skin, int a, int b) const {

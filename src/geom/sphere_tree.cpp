@@ -7,11 +7,12 @@ namespace {
 
 using Index = std::size_t;
 
-/// Halves items until eight or fewer are left; all but the last of the parts that become bounds are full.
+/// Halves items down to single ones, so that an order leads to itself; all but the last of the parts that
+/// become bounds are full.
 void sort_by_place(const std::vector<Sphere>& items, int* begin, int count) {
+  if (count < 2) return;
   int full = 1;
   while (full * SphereTree::width < count) full *= SphereTree::width;
-  if (count <= 2) return;
 
   Eigen::AlignedBox3d centres;
   for (int k = 0; k < count; ++k) centres.extend(items[static_cast<Index>(begin[k])].centre);

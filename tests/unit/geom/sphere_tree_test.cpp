@@ -72,6 +72,16 @@ RC_GTEST_PROP(SphereTree, ApproachFindsTheNearestItem, (std::uint64_t seed)) {
   RC_ASSERT(visited <= items.size());
 }
 
+RC_GTEST_PROP(SphereTree, ItsOrderLeadsToItself, (std::uint64_t seed)) {
+  Rng rng(seed, "tree");
+  const std::vector<Sphere> items = some_spheres(rng);
+  const SphereTree tree(items);
+  std::vector<Sphere> sorted;
+  for (int k : tree.order()) sorted.push_back(items[static_cast<Index>(k)]);
+  const SphereTree again(sorted);
+  for (Index k = 0; k < sorted.size(); ++k) RC_ASSERT(again.order()[k] == static_cast<int>(k));
+}
+
 TEST(SphereTree, HalvesAreSpatial) {
   // 64 points in a row, given in a mixed order: each eight that share a bound are neighbours.
   std::vector<Sphere> items;
