@@ -15,14 +15,14 @@ namespace {
 using Index = std::size_t;
 using Key = std::array<int, 4>;  // stone, pebble, stone or -1 - wall, pebble
 
-/// Stones of three shapes and many sizes, some far away, in each other's way, between a plane and a box.
+/// Stones of four shapes, whose trees have one to four levels, and many sizes, some far away, in each other's way, between a plane and a box.
 Simulation heap(std::uint64_t seed) {
   Rng rng(seed, "search");
   Simulation sim = scenes::make_scene({});
   sim.model.limits.overlap = 1e9;
   sim.model.limits.through = 1e9;
   sim.model.search = {rng.uniform(1e-4, 3e-3), 3e-3};
-  for (int n : {1, 7, 40}) {
+  for (int n : {1, 7, 40, 100}) {
     std::vector<Pebble> pebbles;
     for (int k = 0; k < n; ++k)
       pebbles.push_back({rng.uniform(0, 0.02) * (rng.rotation() * Vec3::UnitX()), rng.uniform(0.001, 0.008)});
@@ -30,7 +30,7 @@ Simulation heap(std::uint64_t seed) {
   }
   for (int k = 0; k < 10; ++k) {
     const double away = k == 9 ? 30.0 : rng.uniform(0, 0.09);
-    add_clump(sim.model, sim.state, 1 + k % 3, rng.uniform(0.3, 2), 0,
+    add_clump(sim.model, sim.state, 1 + k % 4, rng.uniform(0.3, 2), 0,
               {away * (rng.rotation() * Vec3::UnitX()), rng.rotation()});
   }
   scenes::add_plate(sim, box_mesh(Vec3::Constant(0.03)), {{0.02, 0, 0}, rng.rotation()});
