@@ -79,6 +79,11 @@ std::optional<std::string> Checkpoints::newest() const {
   const std::vector<fs::path> files = files_in(folder_);
   for (auto file = files.rbegin(); file != files.rend(); ++file)
     if (auto content = read_checked(*file)) return content;
+  if (!files.empty())
+    throw InputError(
+        folder_.string() +
+        ": no checkpoint here is whole and of this version of the program; leave out --resume to "
+        "begin anew");
   return std::nullopt;
 }
 

@@ -30,7 +30,8 @@ class Checkpoints {
   /// RunError.
   void write(std::string_view bytes);
 
-  /// The bytes of the last whole one; nothing when there is none.
+  /// The bytes of the last whole one; nothing when there is no file. Throws InputError when there are files,
+  /// but none is whole and of this format.
   std::optional<std::string> newest() const;
 
   /// Deletes all, when the run is over.

@@ -263,6 +263,25 @@ TEST_F(Checkpoint, OfAnotherCaseIsRefusedWithTheKeyThatDiffers) {
   }
 }
 
+TEST_F(Checkpoint, OfAnotherVersionIsRefusedAndTheResultsStay) {
+  stop_after(100);
+  ASSERT_EQ(files().size(), 1u);
+  std::string bytes = read_file(files()[0]);
+  bytes.replace(0, 17, "trackbed state 1\n");
+  write_file(files()[0], bytes);
+  const std::string series = read_file(folder_.path / "series.csv");
+  try {
+    run_case(replaced, folder_.path, 1, {}, true);
+    FAIL() << "the checkpoint means something else";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.what(), (folder_.path / "checkpoint").string() +
+                                ": no checkpoint here is whole and of this version of the program; leave out "
+                                "--resume to begin anew");
+  }
+  EXPECT_EQ(read_file(folder_.path / "series.csv"), series);
+  EXPECT_EQ(read_file(files()[0]), bytes);
+}
+
 TEST_F(Checkpoint, ABitThatFellOverIsNoticed) {
   write_checked(folder_.path / "state", "some bytes, not a multiple of eight");
   EXPECT_EQ(read_checked(folder_.path / "state"), "some bytes, not a multiple of eight");
