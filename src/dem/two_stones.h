@@ -61,8 +61,7 @@ class TwoStones {
   }
 
   template <class Visit>
-  bool near(double skin, const Range& of_i, const SphereTree::Level& i, const Range& of_j,
-            const SphereTree::Level& j, Visit&& visit) const;
+  bool near(double skin, const Range& of_i, const Range& of_j, Visit&& visit) const;
 
   const ClumpTemplate &i_, &j_;
   double scale_i_, scale_j_;
@@ -73,8 +72,8 @@ class TwoStones {
 /// Visits the spheres of two ranges, the first of them no wider than a bound, with no more than the skin
 /// between them.
 template <class Visit>
-bool TwoStones::near(double skin, const Range& of_i, const SphereTree::Level& i, const Range& of_j,
-                     const SphereTree::Level& j, Visit&& visit) const {
+bool TwoStones::near(double skin, const Range& of_i, const Range& of_j, Visit&& visit) const {
+  const SphereTree::Level &i = level_of(i_, of_i), &j = level_of(j_, of_j);
   const Lanes scale = scale_i_;
   for (int k = of_i.first; k < of_i.last; k += Lanes::size) {
     const std::size_t at = static_cast<std::size_t>(k);
@@ -116,7 +115,7 @@ bool TwoStones::any_within(double skin, Visit&& visit) const {
       --of_j.level;
     }
     const bool are_pebbles = of_i.level == 0 && of_j.level == 0;
-    const bool is_done = near(skin, of_i, level_of(i_, of_i), of_j, level_of(j_, of_j), [&](int a, int b) {
+    const bool is_done = near(skin, of_i, of_j, [&](int a, int b) {
       if (are_pebbles) return visit(a, b);
       stack[top++] = {of_i.level, a, of_j.level, b};
       return false;

@@ -31,8 +31,6 @@ void sort_by_place(const std::vector<Sphere>& items, int* begin, int count) {
 SphereTree::Level level_of(const std::vector<Sphere>& spheres) {
   SphereTree::Level level;
   level.count = static_cast<int>(spheres.size());
-  for (auto* column : {&level.x, &level.y, &level.z, &level.radius})
-    column->reserve(spheres.size() + SphereTree::width);
   for (const Sphere& s : spheres) {
     level.x.push_back(s.centre.x());
     level.y.push_back(s.centre.y());

@@ -267,7 +267,7 @@ TEST_F(Checkpoint, OfAnotherVersionIsRefusedAndTheResultsStay) {
   stop_after(100);
   ASSERT_EQ(files().size(), 1u);
   std::string bytes = read_file(files()[0]);
-  bytes.replace(0, 17, "trackbed state 1\n");
+  bytes.replace(0, state_format.size(), "trackbed state 1\n");
   write_file(files()[0], bytes);
   const std::string series = read_file(folder_.path / "series.csv");
   try {

@@ -15,7 +15,8 @@ namespace {
 using Index = std::size_t;
 using Key = std::array<int, 4>;  // stone, pebble, stone or -1 - wall, pebble
 
-/// Stones of four shapes, whose trees have one to four levels, and many sizes, some far away, in each other's way, between a plane and a box.
+/// Stones of four shapes, whose trees have one to four levels, and many sizes, some far away, in each other's
+/// way, between a plane and a box.
 Simulation heap(std::uint64_t seed) {
   Rng rng(seed, "search");
   Simulation sim = scenes::make_scene({});
