@@ -40,8 +40,8 @@ std::vector<DataArray> stone_data(const Simulation& sim, const StonePlaces& befo
           {"mean stress [Pa]", stress}};
 }
 
-PolyData stones_as_surfaces(const Simulation& sim, const StonePlaces& before,
-                            const std::vector<TriangleMesh>& meshes) {
+PolyData stones_as_surfaces(const Simulation& sim, const StonePlaces& before) {
+  const std::vector<TriangleMesh> meshes = shown_surfaces(sim.model, sim.state.clumps.size());
   std::vector<Index> rows;
   for (Index i = 0; i < sim.state.clumps.id.size(); ++i) rows.push_back(i);
   return surfaces(posed_stones(sim.state, meshes), stone_data(sim, before, rows));
@@ -93,10 +93,9 @@ PolyData walls_as_surfaces(const Simulation& sim) {
 
 }  // namespace
 
-Paraview::Paraview(const Model& model, std::filesystem::path folder, std::string stones)
+Paraview::Paraview(std::filesystem::path folder, std::string stones)
     : folder_((make_folder(folder), std::move(folder))),
       stones_(std::move(stones)),
-      surfaces_(stones_ == "surfaces" ? shown_surfaces(model) : std::vector<TriangleMesh>()),
       stone_series_(folder_ / "stones.pvd"),
       contact_series_(folder_ / "contacts.pvd"),
       wall_series_(folder_ / "walls.pvd") {}
@@ -112,7 +111,7 @@ void Paraview::add_frame(const Simulation& sim, const StonePlaces& before) {
   const bool is_new = frame_ < 0 || sim.state.time != time_;
   if (is_new) ++frame_;
   time_ = sim.state.time;
-  if (stones_ == "surfaces") add(stone_series_, "stones", stones_as_surfaces(sim, before, surfaces_), is_new);
+  if (stones_ == "surfaces") add(stone_series_, "stones", stones_as_surfaces(sim, before), is_new);
   if (stones_ == "pebbles") add(stone_series_, "stones", stones_as_pebbles(sim, before), is_new);
   add(contact_series_, "contacts", contacts_as_lines(sim), is_new);
   add(wall_series_, "walls", walls_as_surfaces(sim), is_new);

@@ -16,7 +16,7 @@ namespace trackbed {
 class Paraview {
  public:
   /// `stones`: surfaces, pebbles or none. Throws RunError when the folder cannot be written.
-  Paraview(const Model& model, std::filesystem::path folder, std::string stones);
+  Paraview(std::filesystem::path folder, std::string stones);
 
   /// Adds a frame of the present state, with the displacements of stones from `before`; replaces the last one
   /// when no time has passed (a stage that places things).
@@ -32,7 +32,6 @@ class Paraview {
 
   std::filesystem::path folder_;
   std::string stones_;
-  std::vector<TriangleMesh> surfaces_;  // of the templates
   TimeSeries stone_series_, contact_series_, wall_series_;
   int frame_ = -1;   // the last one written
   double time_ = 0;  // its time [s]

@@ -69,7 +69,7 @@ std::array<Viewport, 2> two_views(const Eigen::AlignedBox3d& box) {
 }  // namespace
 
 void draw_bed(const Simulation& sim, const std::filesystem::path& png) {
-  const std::vector<TriangleMesh> surfaces = shown_surfaces(sim.model);
+  const std::vector<TriangleMesh> surfaces = shown_surfaces(sim.model, sim.state.clumps.size());
   const Eigen::AlignedBox3d box = box_of_bed(sim);
   const auto grey = [&](Index i) { return stone_colour(sim.state.clumps.id[i]); };
   Picture picture(1600, 800);
@@ -84,7 +84,7 @@ void draw_bed(const Simulation& sim, const std::filesystem::path& png) {
 
 void draw_displacements(const Simulation& sim, const std::vector<Vec3>& moved, std::optional<double> scale,
                         const std::filesystem::path& png) {
-  const std::vector<TriangleMesh> surfaces = shown_surfaces(sim.model);
+  const std::vector<TriangleMesh> surfaces = shown_surfaces(sim.model, sim.state.clumps.size());
   const Eigen::AlignedBox3d box = box_of_bed(sim);
   double largest = 0;
   for (const Vec3& way : moved) largest = std::max(largest, way.norm());

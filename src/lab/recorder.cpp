@@ -62,7 +62,7 @@ Recorder::Recorder(const Simulation& sim, RecordInput record, fs::path folder)
     : record_(std::move(record)),
       folder_(std::move(folder)),
       measures_(series_measures(sim, record_.measures)),
-      paraview_(sim.model, folder_ / "paraview", record_.paraview_stones),
+      paraview_(folder_ / "paraview", record_.paraview_stones),
       row_due_(next_after(sim.state.time, record_.every)),
       frame_due_(record_.paraview_every ? next_after(sim.state.time, *record_.paraview_every)
                                         : std::numeric_limits<double>::infinity()) {}
@@ -133,7 +133,7 @@ void Recorder::write_table(const Simulation& sim, const ResultTable& table) cons
 
 fs::path Recorder::write_failure(const Simulation& sim) const {
   const fs::path folder = folder_ / "failure";
-  Paraview(sim.model, folder / "paraview", record_.paraview_stones).add_frame(sim, sim.places);
+  Paraview(folder / "paraview", record_.paraview_stones).add_frame(sim, sim.places);
   write_contacts(sim, folder / "contacts.csv");
   write_stones(sim, sim.places, folder / "stones.csv");
   return folder;

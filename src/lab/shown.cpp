@@ -1,5 +1,6 @@
 #include "lab/shown.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -13,6 +14,14 @@ using Index = std::size_t;
 
 constexpr Index most_facets = 1000;     // of a stone that is shown as it is
 constexpr double cells_per_radius = 8;  // of the bounding sphere, in a finer one
+constexpr int most_in_all = 4'000'000;  // facets of all balls: some 300 MB while they are written
+
+/// Refinement of an icosahedron for each of so many balls.
+int ball_level(int balls) {
+  int level = 3;
+  while (level > 0 && (20 << (2 * level)) > most_in_all / std::max(1, balls)) --level;
+  return level;
+}
 
 void add_ball(TriangleMesh& mesh, const Pebble& pebble, int level) {
   const TriangleMesh ball = icosphere(level, pebble.radius);
@@ -48,12 +57,13 @@ TriangleMesh merge_vertices(const TriangleMesh& mesh, double cell) {
   return merged;
 }
 
-std::vector<TriangleMesh> shown_surfaces(const Model& model) {
+std::vector<TriangleMesh> shown_surfaces(const Model& model, int stones) {
   std::vector<TriangleMesh> shown;
   for (const ClumpTemplate& t : model.templates) {
     TriangleMesh mesh = t.surface;
     if (mesh.facets.empty())
-      for (const Pebble& pebble : t.pebbles) add_ball(mesh, pebble, t.pebbles.size() == 1 ? 3 : 1);
+      for (const Pebble& pebble : t.pebbles)
+        add_ball(mesh, pebble, t.pebbles.size() == 1 ? ball_level(stones) : 1);
     else if (mesh.facets.size() > most_facets)
       mesh = merge_vertices(mesh, t.bounding_radius / cells_per_radius);
     shown.push_back(std::move(mesh));

@@ -9,8 +9,9 @@
 namespace trackbed {
 
 /// A surface for each template, in its frame at scale 1: the stone's mesh, merged to some hundred facets
-/// where it is a fine scan; for a template without mesh its pebbles as balls.
-std::vector<TriangleMesh> shown_surfaces(const Model& model);
+/// where it is a fine scan; for a template without mesh its pebbles as balls, the coarser the more of these
+/// `stones` there are to show.
+std::vector<TriangleMesh> shown_surfaces(const Model& model, int stones);
 
 /// The stones where they are; `surfaces` must live as long.
 std::vector<PosedMesh> posed_stones(const State& state, const std::vector<TriangleMesh>& surfaces);

@@ -89,6 +89,36 @@ TEST(scaled_step, only_stones_with_a_short_step_get_more_inertia_and_all_lose_it
   for (const Vec3& v : c.velocity) EXPECT_TRUE(v.isZero(0));
 }
 
+/// Lowers a lid that just touches the small balls of the pile at 1 mm/s for a millimetre; returns its force
+/// [N] and counts the steps.
+double press(bool scaled, int& steps, EnergyBalance& balance) {
+  Simulation sim = pile();
+  const int lid = scenes::add_plane(sim, {0, 0, 0.08}, -Vec3::UnitZ());
+  sim.changed();
+  settle(sim, 1e-10);
+  if (scaled) sim.scale_step();
+  sim.drive(static_cast<std::size_t>(lid), {0, 0, -1e-3});
+  const double start = sim.state.time;
+  const EnergyBalance before = energy_of(sim.model, sim.state);
+  for (steps = 0; sim.state.time - start < 1; ++steps) sim.step();
+  balance = energy_of(sim.model, sim.state);
+  EXPECT_LT(std::abs(balance.total() - before.total()),
+            1e-4 * (balance.boundary_work - before.boundary_work));
+  const WallState& wall = sim.state.walls[static_cast<std::size_t>(lid)];
+  return wall.force.z() / (0.08 - wall.pose.position.z());
+}
+
+// Slow pressing asks of stones what rest does: inertia has no part in it.
+TEST(scaled_step, a_slow_press_meets_the_same_force_in_fewer_steps) {
+  int many = 0, few = 0;
+  EnergyBalance plain, scaled;
+  const double expected = press(false, many, plain), found = press(true, few, scaled);
+  EXPECT_LT(few, 0.7 * many);
+  EXPECT_NEAR(expected / (4 * 1e6 / 3), 1, 1e-2);  // four stacks of three contacts
+  EXPECT_NEAR(found / expected, 1, 1e-3);          // the rest is what inertia asks for at this speed
+  EXPECT_NEAR(scaled.boundary_work / plain.boundary_work, 1, 1e-3);
+}
+
 // What the stones lose as their inertia changes counts as damped: the balance of a fall into rest closes.
 TEST(scaled_step, energy_balance_closes) {
   Simulation sim = pile();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lab/checks.h"
+#include "lab/stages/conditions.h"
 #include "lab/stages/levels.h"
 #include "lab/stages/table.h"
 
@@ -20,6 +21,7 @@ struct MoveInput : StageInput {
   std::optional<double> duration;      // [s]
   std::optional<double> force;         // [N]
   std::vector<double> probes;          // [m]
+  ConditionsInput conditions;
   LevelsInput levels;
   bool says_when() const { return distance || displacement || duration || force; }
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override;
@@ -39,6 +41,7 @@ void declare(Fields& f, MoveInput& in) {
              "stop when the stones push against the motion with this force");
   f.quantities("probes", in.probes, Dimension::length, {.above = 0},
                "distances at which the force against the motion is reported");
+  declare(f, in.conditions);
   declare(f, in.levels);
   f.check(std::is_sorted(in.probes.begin(), in.probes.end()), "probes", "the distances do not ascend",
           "sort them");
@@ -69,6 +72,7 @@ class Move : public Stage {
     wall_ = static_cast<std::size_t>(sim.find_wall(in_.wall));
     start_ = sim.state.time;
     from_ = sim.state.walls[wall_].pose.position;
+    apply(in_.conditions, sim);
     levels_.open(sim);
   }
   void control(Simulation& sim) override {

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "lab/case.h"
+#include "lab/stages/conditions.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -12,11 +13,9 @@ namespace {
 
 struct SettleInput : StageInput {
   double unbalanced_ratio = 1e-3;
-  double time_limit = 10;          // [s]
-  std::optional<double> friction;  // during this stage
-  std::optional<double> damping;   // during this stage
-  std::optional<double> gravity;   // during this stage [m/s^2]
-  bool scaled = false;
+  double time_limit = 10;         // [s]
+  std::optional<double> gravity;  // during this stage [m/s^2]
+  ConditionsInput conditions;
   void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
     if (gravity && experiment.numerics.gravity.isZero(0))
       document.fail(here + ".gravity", "there is no gravity to raise: its direction is not known",
@@ -31,15 +30,9 @@ void declare(Fields& f, SettleInput& in) {
            "at rest when the sum of unbalanced forces is below this share of the sum of all forces");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when rest takes longer");
-  f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
-           "upper bound on the friction of all contacts during this stage: low values make a denser bed");
-  f.number("damping", in.damping, {.at_least = 0, .below = 1}, "local damping during this stage");
   f.quantity("gravity", in.gravity, Dimension::acceleration, {.above = 0},
              "raised gravity during this stage, in its usual direction: stones fall and pack faster");
-  f.flag(
-      "scaled_step", in.scaled,
-      "stones get more inertia, not weight, where this allows a longer time step: rest is reached in fewer "
-      "steps, on another way; not for stones that fall");
+  declare(f, in.conditions);
 }
 
 class Settle : public Stage {
@@ -50,9 +43,7 @@ class Settle : public Stage {
     start_ = sim.state.time;
     Model& m = sim.model;
     if (in_.gravity) m.gravity = *in_.gravity * m.gravity.normalized();
-    if (in_.damping) m.local_damping = *in_.damping;
-    if (in_.friction) m.pairs = m.pairs.with_friction_up_to(*in_.friction);
-    if (in_.scaled) sim.scale_step();
+    apply(in_.conditions, sim);
   }
 
   bool finished(const Simulation& sim) override {

@@ -1,0 +1,22 @@
+// Conditions that a stage may change until its end: friction, damping, inertia.
+#pragma once
+
+#include <optional>
+
+#include "io/schema.h"
+#include "lab/simulation.h"
+
+namespace trackbed {
+
+struct ConditionsInput {
+  std::optional<double> friction, damping;
+  bool scaled_step = false;
+};
+
+/// The keys of all of them.
+void declare(Fields& f, ConditionsInput& in);
+
+/// To be called when the stage is opened; the run brings back what was there before.
+void apply(const ConditionsInput& in, Simulation& sim);
+
+}  // namespace trackbed
