@@ -12,15 +12,25 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr Index most_facets = 1000;     // of a stone that is shown as it is
-constexpr double cells_per_radius = 8;  // of the bounding sphere, in a finer one
-constexpr int most_in_all = 4'000'000;  // facets of all balls: some 300 MB while they are written
+/// Facets of each of so many stones: some 400 MB in all while they are written.
+int facets_for(int stones) {
+  constexpr int most_in_all = 5'000'000, least = 20, most = 1280;
+  return std::clamp(most_in_all / std::max(1, stones), least, most);
+}
 
-/// Refinement of an icosahedron for each of so many balls.
-int ball_level(int balls) {
-  int level = 3;
-  while (level > 0 && (20 << (2 * level)) > most_in_all / std::max(1, balls)) --level;
+/// Refinement of an icosahedron to so many facets.
+int ball_level(int facets) {
+  int level = 0;
+  while ((20 << (2 * (level + 1))) <= facets) ++level;
   return level;
+}
+
+/// The mesh, or one with about so many facets if it has more.
+TriangleMesh coarse(const TriangleMesh& mesh, double bounding_radius, int facets) {
+  if (mesh.facets.size() <= static_cast<Index>(facets)) return mesh;
+  constexpr double facets_at_one_cell =
+      20;  // with cells as large as the bounding radius; grows as its square
+  return merge_vertices(mesh, bounding_radius / std::sqrt(facets / facets_at_one_cell));
 }
 
 void add_ball(TriangleMesh& mesh, const Pebble& pebble, int level) {
@@ -59,13 +69,12 @@ TriangleMesh merge_vertices(const TriangleMesh& mesh, double cell) {
 
 std::vector<TriangleMesh> shown_surfaces(const Model& model, int stones) {
   std::vector<TriangleMesh> shown;
+  const int facets = facets_for(stones);
   for (const ClumpTemplate& t : model.templates) {
-    TriangleMesh mesh = t.surface;
+    TriangleMesh mesh = coarse(t.surface, t.bounding_radius, facets);
     if (mesh.facets.empty())
       for (const Pebble& pebble : t.pebbles)
-        add_ball(mesh, pebble, t.pebbles.size() == 1 ? ball_level(stones) : 1);
-    else if (mesh.facets.size() > most_facets)
-      mesh = merge_vertices(mesh, t.bounding_radius / cells_per_radius);
+        add_ball(mesh, pebble, t.pebbles.size() == 1 ? ball_level(facets) : 1);
     shown.push_back(std::move(mesh));
   }
   return shown;

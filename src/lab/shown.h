@@ -8,9 +8,8 @@
 
 namespace trackbed {
 
-/// A surface for each template, in its frame at scale 1: the stone's mesh, merged to some hundred facets
-/// where it is a fine scan; for a template without mesh its pebbles as balls, the coarser the more of these
-/// `stones` there are to show.
+/// A surface for each template, in its frame at scale 1: the stone's mesh, or for a template without mesh its
+/// pebbles as balls; the coarser the more of these `stones` there are to show.
 std::vector<TriangleMesh> shown_surfaces(const Model& model, int stones);
 
 /// The stones where they are; `surfaces` must live as long.
