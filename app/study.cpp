@@ -156,7 +156,11 @@ class StudyRun {
     if (ended.succeeded) {
       outcome = outcome_of(members_[m], folder_of(members_[m]));
       if (outcome.status != MemberStatus::done)
-        outcome = {MemberStatus::failed, "it left no summary.json", {}};
+        outcome = {MemberStatus::failed,
+                   outcome.cause.empty() ? "it left no summary.json"
+                                         : "its case was changed while the study ran (" + outcome.cause +
+                                               "); --retry runs it again",
+                   {}};
       ++finished_;
     } else if (ended.was_stopped && ++stopped_[m] < most_stops) {
       waiting_.push_back(job_of(members_[m]));  // by somebody or for want of memory: not its own fault

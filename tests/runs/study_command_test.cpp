@@ -121,6 +121,18 @@ TEST_F(StudyCommand, RunsAgainOnlyWhatHasChanged) {
   ASSERT_EQ(run("out"), 0) << messages();
 }
 
+TEST_F(StudyCommand, SaysThatTheCaseWasChangedWhileItRan) {
+  StudyProcess running(TRACKBED_PROGRAM, folder_.path / "study.toml", folder_.path / "out", {"--jobs", "1"});
+  while (!fs::exists(folder_.path / "out/members") && !running.has_ended())
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  std::string changed = balls_in_a_box;
+  changed.replace(changed.find("\"0.1 m\""), 7, "\"0.12 m\"");
+  write_file(folder_.path / "case.toml", changed);
+  EXPECT_EQ(running.wait(), 1);
+  EXPECT_NE(messages().find("its case was changed while the study ran (walls.box.size"), std::string::npos)
+      << messages();
+}
+
 TEST_F(StudyCommand, ABadMemberIsNamedAndTheOthersGoOn) {
   std::string with_bad = study;
   with_bad.replace(with_bad.find("values = [\"0.1\", \"0.5\"]"), 24, "values = [\"0.5\"]");
