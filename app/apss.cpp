@@ -9,6 +9,7 @@
 #include "commands.h"
 #include "io/echo.h"
 #include "io/progress.h"
+#include "kept.h"
 #include "lab/influence.h"
 #include "lab/recorder.h"
 #include "lab/run.h"
@@ -150,6 +151,7 @@ int apss_command(int argc, char** argv) {
   app.add_flag("--quiet", o.run.quiet, "print nothing but errors");
   ResumeOptions resume;
   resume.add_to(app);
+  add_keep(app, o.run);
   if (const auto code = parse(app, argc, argv)) return *code;
   resume.apply(o.run);
   if (o.out.empty())

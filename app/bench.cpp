@@ -127,6 +127,9 @@ BenchResult bench(const BenchScene& scene, const BenchOptions& o) {
   } else {
     use_threads(0);  // settling a bed may take all cores
     const fs::path folder = o.keep.empty() ? default_cache() : o.keep;
+    if (folder.empty())
+      throw InputError(
+          "neither XDG_CACHE_HOME nor HOME says where beds can be kept: give a folder with --keep");
     run = start_bench(scene, {folder, [&](const std::string& stage) {
                                 fmt::print(stderr, "{}: making a bed, to be kept in {}: {}\n", scene.name,
                                            folder.string(), stage);

@@ -23,7 +23,7 @@ void print_round(const SleeperRange& range, const CouplingRound& r) {
 }  // namespace
 
 int couple_command(int argc, char** argv) {
-  std::filesystem::path file, out, keep;
+  std::filesystem::path file, out;
   std::vector<std::string> overrides;
   RunOptions options;
   CLI::App app(
@@ -38,8 +38,7 @@ int couple_command(int argc, char** argv) {
       ->allow_extra_args(false);
   app.add_option("--threads", options.threads, "number of threads; 0: one for each core")
       ->check(CLI::Range(0, 4096));
-  app.add_option("--keep", keep,
-                 "folder where the reduced ground of a track is kept; default: ~/.cache/trackbed");
+  add_keep(app, options);
   app.add_flag("--quiet", options.quiet, "print nothing but errors");
   if (const auto code = parse(app, argc, argv)) return *code;
 
@@ -48,10 +47,9 @@ int couple_command(int argc, char** argv) {
   document.read(in);
   options.out = out.empty() ? std::filesystem::path("out") / file.stem() : out;
   options.progress = stderr;
-  const auto rounds =
-      run_coupling(document, in, options, keep.empty() ? default_cache() : keep, [&](const CouplingRound& r) {
-        if (!options.quiet) print_round(in.sleepers[r.range], r);
-      });
+  const auto rounds = run_coupling(document, in, options, [&](const CouplingRound& r) {
+    if (!options.quiet) print_round(in.sleepers[r.range], r);
+  });
   if (options.quiet) return 0;
   fmt::print("{}: agreed after {} rounds\nresults: {}, the last passage in passage-{}\n", in.title,
              rounds.back().round, options.out.string(), rounds.back().round);

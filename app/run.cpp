@@ -45,11 +45,11 @@ void print_results(const Summary& summary) {
 }
 
 /// The passage of a train takes minutes: it is not kept on its way, and begins anew.
-int run_track_case(const Document& document, const RunOptions& options, const std::filesystem::path& keep) {
+int run_track_case(const Document& document, const RunOptions& options) {
   TrackCaseInput in;
   document.read(in);
   if (options.resume && results_of(echo(in), options.out)) return 0;
-  const Summary summary = run_track(document, in, options, keep);
+  const Summary summary = run_track(document, in, options);
   if (options.quiet) return 0;
   fmt::print("{}: {}\n", in.title, duration_text(summary.wall));
   for (const Result& r : summary.measures)
@@ -61,7 +61,7 @@ int run_track_case(const Document& document, const RunOptions& options, const st
 }  // namespace
 
 int run_command(int argc, char** argv) {
-  std::filesystem::path file, out, keep;
+  std::filesystem::path file, out;
   std::vector<std::string> overrides;
   RunOptions options;
   ResumeOptions resume;
@@ -74,8 +74,7 @@ int run_command(int argc, char** argv) {
   app.add_option("--threads", options.threads, "number of threads; 0: one for each core")
       ->check(CLI::Range(0, 4096));
   resume.add_to(app);
-  app.add_option("--keep", keep,
-                 "folder where the reduced ground of a track is kept; default: ~/.cache/trackbed");
+  add_keep(app, options);
   app.add_flag("--quiet", options.quiet, "print nothing but errors");
   if (const auto code = parse(app, argc, argv)) return *code;
 
@@ -85,8 +84,7 @@ int run_command(int argc, char** argv) {
                     : out;
   options.progress = stderr;
   resume.apply(options);
-  if (is_track_case(document))
-    return run_track_case(document, options, keep.empty() ? default_cache() : keep);
+  if (is_track_case(document)) return run_track_case(document, options);
   CaseInput experiment;
   document.read(experiment);
   if (options.resume && results_of(echo(experiment), options.out)) return 0;

@@ -114,6 +114,7 @@ struct RecordInput {
   std::vector<std::string> measures;                           // further columns of series.csv
   std::vector<double> force_bins{100, 500, 1000, 2000, 3000};  // limits of the histogram [N]
   std::vector<std::string> stages;                             // at whose ends is written; empty: all
+  std::vector<std::string> keep;                               // whose ends are kept for other runs
   bool tables = true;                                          // contacts.csv and stones.csv at stage ends
   std::optional<double> paraview_every;                        // [s]; default: at stage ends only
   std::string paraview_stones = "surfaces";                    // surfaces | pebbles | none

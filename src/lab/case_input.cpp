@@ -128,6 +128,10 @@ void declare(Fields& f, RecordInput& in) {
       "limits of the histogram of contact forces, and of the ranges of the measures contacts_FROM_TO_N");
   f.texts("stages", in.stages,
           "stages at whose ends tables, pictures and a ParaView frame are written; by default all");
+  f.texts("keep", in.keep,
+          "stages whose ends are kept in the folder of --keep: a run that is the same up to one of them "
+          "begins there, "
+          "with the same bits, and writes down what follows; not where regions come from files");
   f.flag("tables", in.tables, "write contacts.csv and stones.csv at the end of these stages");
   f.quantity("paraview_every", in.paraview_every, Dimension::time, {.above = 0},
              "simulated time between two ParaView frames; by default one at the end of each of these stages");

@@ -11,7 +11,7 @@ namespace trackbed {
 
 /// Begins each file. To be changed when what was written before means something else, as when the pebbles of
 /// a shape come in another order.
-inline constexpr std::string_view state_format = "trackbed state 2\n";
+inline constexpr std::string_view state_format = "trackbed state 3\n";
 
 /// Writes bytes with their checksum, so that they lie on the disk when this returns. Throws RunError.
 void write_checked(const std::filesystem::path& file, std::string_view bytes);

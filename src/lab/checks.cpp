@@ -120,9 +120,12 @@ void check_stages(const Document& document, const CaseInput& in, const Simulatio
   std::vector<std::string> names;
   for (const OneOf<StageInput>& stage : in.stages) names.push_back(stage.input->name);
   std::ranges::sort(names);
-  for (const std::string& name : in.record.stages)
-    if (std::ranges::find(names, name) == names.end())
-      refuse_unknown(document, "record.stages", "stage", name, names);
+  const auto check_names = [&](const char* key, const std::vector<std::string>& asked) {
+    for (const std::string& name : asked)
+      if (std::ranges::find(names, name) == names.end()) refuse_unknown(document, key, "stage", name, names);
+  };
+  check_names("record.stages", in.record.stages);
+  check_names("record.keep", in.record.keep);
 }
 
 void check_in_plane(const Document& document, const Simulation& sim, const std::string& key,

@@ -275,7 +275,7 @@ CoupledCases check_coupling(const Document& document, const CouplingInput& in) {
 }
 
 std::vector<CouplingRound> run_coupling(const Document& document, const CouplingInput& in,
-                                        const RunOptions& options, const fs::path& keep,
+                                        const RunOptions& options,
                                         const std::function<void(const CouplingRound&)>& told) {
   const CoupledCases cases = check_coupling(document, in);
   make_folder(options.out);
@@ -293,7 +293,7 @@ std::vector<CouplingRound> run_coupling(const Document& document, const Coupling
     }
     RunOptions there = options;
     there.out = options.out / fmt::format("passage-{}", round);
-    run_track(cases.track_document, now, there, keep);
+    run_track(cases.track_document, now, there);
     std::vector<std::vector<double>> peaks;
     for (const SleeperRange& range : in.sleepers) {
       const std::vector<int> numbers = numbers_of(range);

@@ -81,7 +81,7 @@ std::vector<CouplingRound> couple(double tolerance, int rounds, double reach, co
 /// rounds (passage-0: on the track case's own ground); bed, where it is built; curve-N-RANGE.csv, what the
 /// track case reads; rounds.csv. Throws InputError, RunError.
 std::vector<CouplingRound> run_coupling(const Document& document, const CouplingInput& in,
-                                        const RunOptions& options, const std::filesystem::path& keep,
+                                        const RunOptions& options,
                                         const std::function<void(const CouplingRound&)>& told = {});
 
 }  // namespace trackbed

@@ -39,13 +39,13 @@ Course::Course(Simulation& sim, std::vector<NamedStage>& stages, Recorder& recor
       options_(options),
       summary_(summary),
       checkpoints_(options.out / "checkpoint", options.checkpoint_every),
+      ends_(options.keep, summary.input, sim.model),
       progress_(options.quiet ? nullptr : options.progress) {}
 
 void Course::begin() {
-  if (const auto bytes = options_.resume ? checkpoints_.newest() : std::nullopt)
-    take_up(*bytes);
-  else
-    recorder_.begin();
+  if (const auto bytes = options_.resume ? checkpoints_.newest() : std::nullopt) return take_up(*bytes);
+  recorder_.begin();
+  take_over();
 }
 
 void Course::run() {
@@ -70,7 +70,9 @@ void Course::run_stage() {
   }
   close();
   progress_.end_stage(progress());
-  if (stage_ + 1 < stages_.size()) leave_checkpoint(stage_ + 1);
+  if (stage_ + 1 == stages_.size()) return;
+  leave_end();
+  leave_checkpoint(stage_ + 1);
 }
 
 void Course::open() {
@@ -157,10 +159,35 @@ void Course::take_up(std::string bytes) {
   find_contacts(sim_.model, sim_.state, sim_.work);
 }
 
+void Course::leave_end() {
+  Archive a;
+  archive_between(a);
+  ends_.write(stages_[stage_].name, a.bytes());
+}
+
+void Course::take_over() {
+  for (std::size_t k = stages_.size(); k-- > 1;) {
+    auto bytes = ends_.find(stages_[k - 1].name);
+    if (!bytes) continue;
+    Archive a(std::move(*bytes));
+    archive_between(a);
+    for (StageSummary& stage : summary_.stages) stage.taken_over = true;
+    stage_ = k;
+    find_contacts(sim_.model, sim_.state, sim_.work);
+    return;
+  }
+}
+
+/// What is left of the stages before.
+void Course::archive_between(Archive& a) {
+  a(sim_.state, static_cast<Conditions&>(sim_.model), sim_.model.domain, sim_.wall_reference,
+    summary_.stages);
+}
+
 /// Where all stands, in the order in which it is read.
 void Course::archive(Archive& a) {
-  a(sim_.state, static_cast<Conditions&>(sim_.model), sim_.model.domain, sim_.wall_reference, sim_.places,
-    is_open_, start_, summary_.stages);
+  archive_between(a);
+  a(sim_.places, is_open_, start_);
   if (is_open_) stages_[stage_].stage->archive(a);
   recorder_.archive(a);
 }

@@ -10,6 +10,7 @@
 #include "lab/checkpoint.h"
 #include "lab/recorder.h"
 #include "lab/run.h"
+#include "lab/stage_ends.h"
 #include "lab/summary.h"
 
 namespace trackbed {
@@ -21,8 +22,8 @@ class Course {
   Course(Simulation& sim, std::vector<NamedStage>& stages, Recorder& recorder, const RunOptions& options,
          Summary& summary);
 
-  /// From the first stage or, when that is asked for, from the last checkpoint. Throws InputError when that
-  /// is of another case.
+  /// From the first stage, from where another run stood that was the same so far (stage_ends.h) or, when that
+  /// is asked for, from the last checkpoint. Throws InputError when that is of another case.
   void begin();
   /// To the end of the last stage. Throws Stopped and RunError.
   void run();
@@ -49,7 +50,10 @@ class Course {
   void look_up();
   void leave_checkpoint(std::size_t stage);
   void take_up(std::string bytes);
+  void leave_end();
+  void take_over();
   void archive(Archive& a);
+  void archive_between(Archive& a);
 
   Simulation& sim_;
   std::vector<NamedStage>& stages_;
@@ -57,6 +61,7 @@ class Course {
   const RunOptions& options_;
   Summary& summary_;
   Checkpoints checkpoints_;
+  StageEnds ends_;
   Progress progress_;
   ProgressState told_;
   std::size_t stage_ = 0;  // that runs, or is next

@@ -23,6 +23,7 @@ struct RunOptions {
   std::FILE* progress = nullptr;  // where the progress line goes; nothing: nowhere
   bool resume = false;            // from the last checkpoint, if there is one
   double checkpoint_every = 600;  // wall time between two checkpoints; there is one at each stage's end [s]
+  std::filesystem::path keep{};   // for ends of stages (stage_ends.h) and reduced ground; empty: none is kept
   std::function<bool()> stop{};   // asked after each step: whether to leave a checkpoint and end
 };
 

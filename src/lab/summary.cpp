@@ -21,15 +21,17 @@ Json named(const std::vector<Result>& results) {
 }
 
 Json to_json(const StageSummary& stage) {
-  return {{"name", stage.name},
-          {"kind", stage.kind},
-          {"steps", stage.steps},
-          {"simulated_s", stage.simulated},
-          {"wall_s", stage.wall},
-          {"steps_per_s", stage.wall > 0 ? static_cast<double>(stage.steps) / stage.wall : 0.0},
-          {"energy_error", quantity(stage.energy_error, Dimension::energy)},
-          {"results", named(stage.results)},
-          {"measures", named(stage.measures)}};
+  Json object = {{"name", stage.name},
+                 {"kind", stage.kind},
+                 {"steps", stage.steps},
+                 {"simulated_s", stage.simulated},
+                 {"wall_s", stage.wall},
+                 {"steps_per_s", stage.wall > 0 ? static_cast<double>(stage.steps) / stage.wall : 0.0},
+                 {"energy_error", quantity(stage.energy_error, Dimension::energy)},
+                 {"results", named(stage.results)},
+                 {"measures", named(stage.measures)}};
+  if (stage.taken_over) object["taken_over"] = true;
+  return object;
 }
 
 }  // namespace

@@ -17,13 +17,14 @@ struct StageSummary {
   std::string name, kind;
   std::int64_t steps = 0;
   double simulated = 0, wall = 0;  // [s]
+  bool taken_over = false;         // from another run that began alike
   double energy_error = 0;         // change of the energy balance's total during the stage [J]
   std::vector<Result> results;     // found by the stage
   std::vector<Result> measures;    // all general measures at its end
 
   template <class A>
   void archive(A& a) {
-    a(name, kind, steps, simulated, wall, energy_error, results, measures);
+    a(name, kind, steps, simulated, wall, taken_over, energy_error, results, measures);
   }
 };
 

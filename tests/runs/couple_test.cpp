@@ -125,7 +125,7 @@ TEST(Couple, ALinearBedGivesTheForcesOfABeamOnWinklersFoundation) {
           now.track.supports.push_back({all, folder.path / "curve.csv", 0});
         }
         const fs::path out = folder.path / std::to_string(round);
-        run_track(document, now, {.out = out, .threads = 1, .quiet = true}, {});
+        run_track(document, now, {.out = out, .threads = 1, .quiet = true});
         return std::vector<std::vector<double>>{{read_peaks(out, {-7}).at(0).force}};
       },
       [&](std::size_t, double force, int) { return line(bed, force, 0); });
@@ -243,7 +243,7 @@ std::vector<CouplingRound> run_tiny(const fs::path& folder, const std::vector<st
   const Document document(folder / "coupling.toml", set);
   CouplingInput in;
   document.read(in);
-  return run_coupling(document, in, {.out = folder / "out", .threads = 1, .quiet = true}, {});
+  return run_coupling(document, in, {.out = folder / "out", .threads = 1, .quiet = true});
 }
 
 TEST(Couple, ATinyBedAndAShortTrackAgree) {

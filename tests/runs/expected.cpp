@@ -39,7 +39,7 @@ Summary run_one(const Document& document, const RunOptions& options) {
   if (is_track_case(document)) {
     TrackCaseInput in;
     document.read(in);
-    return run_track(document, in, options, {});
+    return run_track(document, in, options);
   }
   CaseInput experiment;
   document.read(experiment);

@@ -76,8 +76,7 @@ StageSummary passage(fem::TrackModel& track, const TrackCaseInput& in, TrackReco
 
 }  // namespace
 
-Summary run_track(const Document& document, const TrackCaseInput& in, const RunOptions& options,
-                  const std::filesystem::path& keep) {
+Summary run_track(const Document& document, const TrackCaseInput& in, const RunOptions& options) {
   const Stopwatch watch;
   check_track(document, in);
   Summary summary;
@@ -85,7 +84,7 @@ Summary run_track(const Document& document, const TrackCaseInput& in, const RunO
   summary.threads = use_threads(options.threads);
   summary.input = echo(in);
   make_folder(options.out);
-  fem::TrackModel track = make_track(in, keep);
+  fem::TrackModel track = make_track(in, options.keep);
   const double ground = watch.seconds();
   TrackRecorder recorder(track, in, options.out);
   Progress progress(options.quiet ? nullptr : options.progress);

@@ -7,9 +7,7 @@
 namespace trackbed {
 
 /// Leaves summary.json, series.csv, sleepers.csv and, where asked for, ParaView frames in options.out. Ground
-/// that was worked out before is taken from the folder `keep`; none is kept when it is empty. Throws
-/// InputError, RunError.
-Summary run_track(const Document& document, const TrackCaseInput& in, const RunOptions& options,
-                  const std::filesystem::path& keep);
+/// that was worked out before is taken from options.keep. Throws InputError, RunError.
+Summary run_track(const Document& document, const TrackCaseInput& in, const RunOptions& options);
 
 }  // namespace trackbed

@@ -43,7 +43,7 @@ Summary run_short(const std::filesystem::path& out, const std::vector<std::strin
   const Document document = Document::from_text(short_track, "short.toml", set);
   TrackCaseInput in;
   document.read(in);
-  return run_track(document, in, {.out = out, .threads = 1, .quiet = true}, {});
+  return run_track(document, in, {.out = out, .threads = 1, .quiet = true});
 }
 
 double measure(const Summary& summary, const std::string& name) {

@@ -1,0 +1,106 @@
+#include "lab/stage_ends.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "base/archive.h"
+#include "base/hash.h"
+#include "io/files.h"
+#include "lab/checkpoint.h"
+
+namespace trackbed {
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+namespace {
+
+/// Of stones and walls, whose files may have changed while their names stayed.
+std::uint64_t hash_of_shapes(const Model& model) {
+  Hash hash;
+  const auto add = [&](const Vec3& v) {
+    for (const double x : v) hash.add(x);
+  };
+  for (const ClumpTemplate& t : model.templates) {
+    hash.add(t.volume);
+    add(t.inertia);
+    for (const Pebble& pebble : t.pebbles) {
+      add(pebble.centre);
+      hash.add(pebble.radius);
+    }
+  }
+  for (const Wall& wall : model.walls)
+    for (const Vec3& v : wall.shape.mesh.vertices) add(v);
+  return hash.value();
+}
+
+/// Another build may round otherwise.
+std::uint64_t hash_of_program() {
+  Hash hash;
+  hash.add(std::string_view(read_file("/proc/self/exe")));
+  return hash.value();
+}
+
+bool is_from_a_file(const Json& region) {
+  return region.contains("file");
+}
+
+}  // namespace
+
+StageEnds::StageEnds(fs::path folder, const Json& input, const Model& model)
+    : folder_(std::move(folder)), input_(input) {
+  // What a region's file holds is not known here: beds with such regions are not kept.
+  const bool is_told = input_.contains("regions") && std::ranges::none_of(input_["regions"], is_from_a_file);
+  if (!is_told || input_["record"]["keep"].empty()) folder_.clear();
+  if (folder_.empty()) return;
+  shapes_ = hash_of_shapes(model);
+  program_ = hash_of_program();
+}
+
+bool StageEnds::is_kept(const std::string& stage) const {
+  if (folder_.empty()) return false;
+  const auto names = input_["record"]["keep"].get<std::vector<std::string>>();
+  return std::ranges::find(names, stage) != names.end();
+}
+
+std::string StageEnds::what_decides(const std::string& stage) const {
+  Json what = input_;
+  what.erase("title");
+  what["record"] = {{"force_bins", input_["record"]["force_bins"]}};  // measures of stages are named by them
+  Json& stages = what["stages"];
+  const auto last = std::ranges::find_if(stages, [&](const Json& s) { return s["name"] == stage; });
+  stages.erase(last + 1, stages.end());
+  return fmt::format("{:016x} {:016x} {}", program_, shapes_, what.dump());
+}
+
+fs::path StageEnds::file_of(const std::string& what) const {
+  Hash hash;
+  hash.add(std::string_view(what));
+  return folder_ / fmt::format("{:016x}.end", hash.value());
+}
+
+void StageEnds::write(const std::string& stage, std::string_view bytes) const {
+  if (!is_kept(stage)) return;
+  std::string what = what_decides(stage), content(bytes);
+  const fs::path file = file_of(what);
+  if (fs::exists(file)) return;
+  Archive a;
+  a(what, content);
+  make_folder(folder_);
+  write_checked(file, a.bytes());
+}
+
+std::optional<std::string> StageEnds::find(const std::string& stage) const {
+  if (!is_kept(stage)) return std::nullopt;
+  const std::string wanted = what_decides(stage);
+  auto found = read_checked(file_of(wanted));
+  if (!found) return std::nullopt;
+  Archive a(std::move(*found));
+  std::string what, content;
+  a(what, content);
+  if (what != wanted) return std::nullopt;
+  return content;
+}
+
+}  // namespace trackbed
