@@ -17,6 +17,8 @@
 
 namespace trackbed {
 
+inline constexpr double usual_scaled_share = 0.5;
+
 /// Shapes of one kind and their material: what stones are drawn from.
 struct StoneSet {
   std::string name;
@@ -72,8 +74,9 @@ struct Simulation {
   /// Takes all speed from the stones.
   void stop_stones();
 
-  /// Gives stones the inertia that a longer time step needs (dem/timestep.h), until restore().
-  void scale_step() { model.scaled_share = 0.5; }
+  /// Gives this share of the stones the inertia that a longer time step needs (dem/timestep.h), until
+  /// restore().
+  void scale_step(double share = usual_scaled_share) { model.scaled_share = share; }
 
   /// Brings back the conditions of before a stage; all come to a halt when that ends a scaled time step.
   void restore(const Conditions& before);

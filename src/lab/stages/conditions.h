@@ -11,6 +11,7 @@ namespace trackbed {
 struct ConditionsInput {
   std::optional<double> friction, damping;
   bool scaled_step = false;
+  double scaled_share = usual_scaled_share;
 };
 
 /// The keys of all of them.
