@@ -60,9 +60,13 @@ Colour colour_of_share(double share) {
   return {0.9f, 0.8f - 1.2f * (s - 0.5f), 0.25f - 0.2f * (s - 0.5f)};
 }
 
+bool is_long(const Eigen::AlignedBox3d& box) {
+  return box.sizes().x() > 3 * box.sizes().z();
+}
+
 /// Where two views go: beside each other, or one above the other when the bed is long.
 std::array<Viewport, 2> two_views(const Eigen::AlignedBox3d& box) {
-  if (box.sizes().x() > 3 * box.sizes().z()) return {{{0.01, 0.02, 0.98, 0.47}, {0.01, 0.51, 0.98, 0.47}}};
+  if (is_long(box)) return {{{0.01, 0.02, 0.98, 0.47}, {0.01, 0.51, 0.98, 0.47}}};
   return {{{0.01, 0.02, 0.48, 0.96}, {0.51, 0.02, 0.48, 0.96}}};
 }
 
@@ -109,8 +113,9 @@ void draw_forces(const Simulation& sim, const std::filesystem::path& png) {
   for (const BodyPair& pair : pairs) largest = std::max(largest, pair.force.norm());
   for (Index i = 0; i < position.size(); ++i) reach = std::max(reach, equal_volume_radius(sim, i));
 
-  Picture picture(1000, 800);
-  picture.look(Vec3(0.0, 1.0, -0.12), box_of_bed(sim), {0.02, 0.02, 0.96, 0.96});
+  const Eigen::AlignedBox3d box = box_of_bed(sim);
+  Picture picture = is_long(box) ? Picture(1600, 400) : Picture(1000, 800);
+  picture.look(Vec3(0.0, 1.0, -0.12), box, {0.02, 0.02, 0.96, 0.96});
   draw_bodies(sim, picture);
   for (const BodyPair& pair : pairs) {
     const double share = largest > 0 ? std::sqrt(pair.force.norm() / largest) : 0.0;
