@@ -28,8 +28,7 @@ int ball_level(int facets) {
 /// The mesh, or one with about so many facets if it has more.
 TriangleMesh coarse(const TriangleMesh& mesh, double bounding_radius, int facets) {
   if (mesh.facets.size() <= static_cast<Index>(facets)) return mesh;
-  constexpr double facets_at_one_cell =
-      20;  // with cells as large as the bounding radius; grows as its square
+  constexpr double facets_at_one_cell = 20;  // where cells are as large as the bounding radius
   return merge_vertices(mesh, bounding_radius / std::sqrt(facets / facets_at_one_cell));
 }
 

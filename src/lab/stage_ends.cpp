@@ -80,15 +80,16 @@ fs::path StageEnds::file_of(const std::string& what) const {
   return folder_ / fmt::format("{:016x}.end", hash.value());
 }
 
+bool StageEnds::wants(const std::string& stage) const {
+  return is_kept(stage) && !fs::exists(file_of(what_decides(stage)));
+}
+
 void StageEnds::write(const std::string& stage, std::string_view bytes) const {
-  if (!is_kept(stage)) return;
   std::string what = what_decides(stage), content(bytes);
-  const fs::path file = file_of(what);
-  if (fs::exists(file)) return;
   Archive a;
   a(what, content);
   make_folder(folder_);
-  write_checked(file, a.bytes());
+  write_checked(file_of(what), a.bytes());
 }
 
 std::optional<std::string> StageEnds::find(const std::string& stage) const {

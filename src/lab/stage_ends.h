@@ -16,7 +16,10 @@ class StageEnds {
   /// In `folder`; empty: nothing is kept. `input` is the resolved case, whose record.keep names the stages.
   StageEnds(std::filesystem::path folder, const nlohmann::ordered_json& input, const Model& model);
 
-  /// Keeps the end of the stage of this name, if it is one of those and not kept yet. Throws RunError.
+  /// Whether the end of the stage of this name is to be kept and is not yet.
+  bool wants(const std::string& stage) const;
+
+  /// Keeps it. Throws RunError.
   void write(const std::string& stage, std::string_view bytes) const;
 
   /// The bytes of an end that a run left which was the same up to it, by the same program; else nothing.
