@@ -42,18 +42,23 @@ std::uint64_t hash_of_program() {
   return hash.value();
 }
 
-bool is_from_a_file(const Json& region) {
-  return region.contains("file");
+/// Whether it names a file whose content the input does not tell.
+bool names_a_file(const Json& part) {
+  if (part.is_object())
+    for (const char* key : {"file", "levels_from"})
+      if (part.contains(key)) return true;
+  return part.is_structured() && std::ranges::any_of(part, names_a_file);
 }
 
 }  // namespace
 
 StageEnds::StageEnds(fs::path folder, const Json& input, const Model& model)
     : folder_(std::move(folder)), input_(input) {
-  // What a region's file holds is not known here: beds with such regions are not kept.
-  const bool is_told = input_.contains("regions") && std::ranges::none_of(input_["regions"], is_from_a_file);
-  if (!is_told || input_["record"]["keep"].empty()) folder_.clear();
   if (folder_.empty()) return;
+  if (input_["record"]["keep"].empty()) {
+    folder_.clear();
+    return;
+  }
   shapes_ = hash_of_shapes(model);
   program_ = hash_of_program();
 }
@@ -61,17 +66,23 @@ StageEnds::StageEnds(fs::path folder, const Json& input, const Model& model)
 bool StageEnds::is_kept(const std::string& stage) const {
   if (folder_.empty()) return false;
   const auto names = input_["record"]["keep"].get<std::vector<std::string>>();
-  return std::ranges::find(names, stage) != names.end();
+  if (std::ranges::find(names, stage) == names.end()) return false;
+  const Json begin = up_to(stage);
+  return !names_a_file(begin["regions"]) && !names_a_file(begin["stages"]);
 }
 
-std::string StageEnds::what_decides(const std::string& stage) const {
+Json StageEnds::up_to(const std::string& stage) const {
   Json what = input_;
   what.erase("title");
   what["record"] = {{"force_bins", input_["record"]["force_bins"]}};  // measures of stages are named by them
   Json& stages = what["stages"];
   const auto last = std::ranges::find_if(stages, [&](const Json& s) { return s["name"] == stage; });
   stages.erase(last + 1, stages.end());
-  return fmt::format("{:016x} {:016x} {}", program_, shapes_, what.dump());
+  return what;
+}
+
+std::string StageEnds::what_decides(const std::string& stage) const {
+  return fmt::format("{:016x} {:016x} {}", program_, shapes_, up_to(stage).dump());
 }
 
 fs::path StageEnds::file_of(const std::string& what) const {

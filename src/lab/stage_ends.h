@@ -27,6 +27,8 @@ class StageEnds {
 
  private:
   bool is_kept(const std::string& stage) const;
+  /// The input as far as it has to do with the stages up to this one.
+  nlohmann::ordered_json up_to(const std::string& stage) const;
   /// All that decides how the stage ends.
   std::string what_decides(const std::string& stage) const;
   std::filesystem::path file_of(const std::string& what) const;

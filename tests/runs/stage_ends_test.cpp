@@ -94,6 +94,13 @@ TEST_F(StageEnds, WhatDiffersBeforeIsNotTakenOver) {
   EXPECT_EQ(taken_over(run({"record.keep=[]"})), 0);
 }
 
+TEST_F(StageEnds, WhereARegionComesFromAFileNothingIsKept) {
+  const fs::path field = folder_.path / "field.csv";
+  write_file(field, "x [m],y [m],z [m],displacement [m]\n0,0,0,1\n");
+  run({"regions.stirred={kind = \"field\", file = \"" + field.string() + "\", above = 0.5}"});
+  EXPECT_EQ(kept(), 0u);
+}
+
 TEST_F(StageEnds, ABrokenFileIsPassedOver) {
   run({});
   for (const fs::path& file : expand_pattern(folder_.path / "kept/*.end"))
