@@ -240,9 +240,13 @@ struct ExplicitSoil::Parts {
 ExplicitSoil::ExplicitSoil(const Soil& soil) : parts_(new Parts(soil)) {}
 ExplicitSoil::~ExplicitSoil() = default;
 
-double ExplicitSoil::stable_time_step() const {
-  const double w = greatest_frequency(parts_->soil), ratio = parts_->soil.input.stiffness_damping * w / 2;
+double stable_time_step(const Soil& soil) {
+  const double w = greatest_frequency(soil), ratio = soil.input.stiffness_damping * w / 2;
   return 2 / w * (std::sqrt(1 + ratio * ratio) - ratio);
+}
+
+double ExplicitSoil::stable_time_step() const {
+  return fem::stable_time_step(parts_->soil);
 }
 
 double ExplicitSoil::node_mass() const {

@@ -7,6 +7,10 @@
 
 namespace trackbed::fem {
 
+/// The longest stable step of central differences without a margin [s]: 2/w of the free elements' greatest
+/// frequency, a bound from below, shortened for stiffness damping.
+double stable_time_step(const Soil&);
+
 /// u(n+1) from u(n), u(n-1) and the forces at n:
 ///     M (u(n+1) - 2 u(n) + u(n-1))/dt^2 + C (u(n+1) - u(n-1))/(2 dt) + K u(n) = f(n)
 /// with lumped mass and diagonal C (dashpots, mass damping); stiffness damping is taken with the velocity of
@@ -17,9 +21,7 @@ class ExplicitSoil {
   explicit ExplicitSoil(const Soil&);
   ~ExplicitSoil();
 
-  /// The longest stable step without a margin [s]: 2/w of the free elements' greatest frequency, a bound from
-  /// below, shortened for stiffness damping. Springs of a contact on nodes of mass `node_mass` shorten it
-  /// further.
+  /// That of the soil alone; springs of a contact on nodes of mass `node_mass` shorten it further.
   double stable_time_step() const;
   double node_mass() const;  // lumped mass of an inner node of a footing [kg]
 

@@ -124,6 +124,16 @@ fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const std::filesys
   return zone;
 }
 
+void check_step(const Document& document, double step, const fem::Soil& soil) {
+  const double longest = fem::stable_time_step(soil);
+  if (step <= longest) return;
+  document.fail(
+      document.has("numerics") ? "numerics.time_step" : "track.ground.model",
+      fmt::format("a time step of {:.4g} ms is too long for ground in full order", 1e3 * step),
+      fmt::format("numerics.time_step = \"{:.4g} ms\" at most; less damping by stiffness allows more",
+                  std::floor(1e6 * longest) / 1e3));
+}
+
 double train_length(const TrackCaseInput& in) {
   return in.train.vehicle.bogie_distance + in.train.vehicle.wheelbase;
 }
@@ -219,12 +229,14 @@ void check_track(const Document& document, const TrackCaseInput& in) {
   if (!has_ground) return;
   for (const TrackZone zone : {TrackZone::approach, TrackZone::departure}) {
     if (sleepers_of(in.track)[static_cast<std::size_t>(zone)] == 0) continue;
+    std::optional<fem::Soil> soil;
     try {
-      fem::make_soil(soil_input(in, zone));
+      soil = fem::make_soil(soil_input(in, zone));
     } catch (const InputError& error) {
       document.fail(document.has("track") ? "track" : "title", error.what(),
                     "lengths of ground are multiples of track.ground.element");
     }
+    if (in.track.ground.model == "explicit") check_step(document, in.numerics.time_step, *soil);
   }
 }
 
