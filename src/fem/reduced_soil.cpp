@@ -6,6 +6,7 @@
 #include <map>
 
 #include "fem/blas.h"
+#include "fem/ritz.h"
 #include "fem/soil_columns.h"
 
 namespace trackbed::fem {
@@ -13,8 +14,6 @@ namespace trackbed::fem {
 namespace {
 
 constexpr double gravity_acceleration = 9.81;  // [m/s2]
-/// Directions in which columns of neighbours are the same but for this share of their mass are left out.
-constexpr double same = 1e-10;
 
 /// Galerkin's matrices of all columns, before they are made orthonormal.
 class Projection {
@@ -127,26 +126,15 @@ class Projection {
   bool has_dashpots_;
 };
 
-/// Columns times this are orthonormal in mass; nearly dependent ones are left out.
-Eigen::MatrixXd orthonormal(Eigen::MatrixXd mass) {
-  const Eigen::VectorXd values = diagonalise(mass);
-  const Eigen::Index n = values.size();
-  Eigen::Index drop = 0;
-  while (values[drop] < same * values[n - 1]) ++drop;
-  return mass.rightCols(n - drop) * values.tail(n - drop).cwiseSqrt().cwiseInverse().asDiagonal();
-}
-
 }  // namespace
 
 ReducedSoil reduce(const Soil& soil, const ReductionInput& input) {
   use_one_blas_thread();
   const ColumnSets columns = make_columns(soil, input);
   Projection all(soil, columns);
-  const Eigen::MatrixXd basis = orthonormal(std::move(all.mass));
-  Eigen::MatrixXd modes = basis.transpose() * (all.stiffness * basis).eval();
+  const auto [values, modes] = ritz_modes(std::move(all.mass), all.stiffness);
   ReducedSoil reduced;
-  reduced.stiffness = diagonalise(modes);
-  modes = (basis * modes).eval();
+  reduced.stiffness = values;
   reduced.nodes = all.nodes * modes;
   reduced.gravity = modes.transpose() * all.gravity;
   if (all.dashpots.size() > 0)

@@ -1,9 +1,12 @@
 #include "fem/track_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
+
+#include "fem/solid_block.h"
 
 namespace trackbed::fem {
 namespace {
@@ -37,9 +40,57 @@ VectorXd mean_deflection(const Beam& beam, double a, double b) {
   return mean;
 }
 
+/// Where rails lie across the track.
+std::vector<double> rail_places(const TrackInput& in) {
+  const double half = in.sleeper.rail_distance / 2;
+  return in.whole_width ? std::vector{-half, half} : std::vector{half};
+}
+
+/// A sleeper of hexahedra or its half; ports as those of the beam.
+Structure<MatrixXd> solid_sleeper(const TrackInput& in) {
+  const Sleeper& s = in.sleeper;
+  const double half = s.length / 2, start = in.whole_width ? -half : 0;
+  SolidBlock block{{-s.width / 2, start, 0},
+                   {s.width / 2, half, s.height},
+                   s.element,
+                   {s.young, s.poisson, s.density},
+                   s.kind,
+                   !in.whole_width};
+  std::vector<FacePatch> ports;
+  const int patches = (in.whole_width ? 2 : 1) * s.patches;
+  for (int p = 0; p < patches; ++p)
+    ports.push_back(
+        {-s.width / 2, s.width / 2, start + p * half / s.patches, start + (p + 1) * half / s.patches, false});
+  for (const double y : rail_places(in))
+    ports.push_back({-s.width / 2, s.width / 2, y - s.seat / 2, std::min(half, y + s.seat / 2), true});
+  return reduce_block(block, ports, in.gravity, 0);
+}
+
+/// A slab of hexahedra or its half; ports: the seats of each rail, one fastening after the other.
+Structure<MatrixXd> solid_slab(const TrackInput& in, int fastenings) {
+  const Slab& s = in.slab;
+  const double half = s.width / 2;
+  SolidBlock block{{0, in.whole_width ? -half : 0, 0},
+                   {fastenings * in.spacing, half, s.depth},
+                   s.element,
+                   {s.young, s.poisson, s.density},
+                   s.kind,
+                   !in.whole_width,
+                   true};
+  std::vector<FacePatch> ports;
+  const double along = in.sleeper.width / 2, across = in.sleeper.seat / 2;
+  for (int k = 0; k < fastenings; ++k)
+    for (const double y : rail_places(in)) {
+      const double x = (k + 0.5) * in.spacing;
+      ports.push_back({x - along, x + along, y - across, y + across, true});
+    }
+  return reduce_block(block, ports, 0, s.damping);
+}
+
 /// A sleeper or its half; ports: the patches from low y to high y, then the rail seats.
 Structure<MatrixXd> sleeper_structure(const TrackInput& in) {
   const Sleeper& s = in.sleeper;
+  if (s.solid) return solid_sleeper(in);
   const double half = s.length / 2, area = s.width * s.height;
   const double shear = 10 * (1 + s.poisson) / (12 + 11 * s.poisson) * area;  // Cowper (1966), a rectangle
   const BeamSection section{s.young, s.width * std::pow(s.height, 3) / 12, area, s.density, shear, s.poisson,
@@ -54,14 +105,23 @@ Structure<MatrixXd> sleeper_structure(const TrackInput& in) {
   for (int p = 0; p < sides * s.patches; ++p)
     ports.col(column++) =
         mean_deflection(beam, start + p * half / s.patches, start + (p + 1) * half / s.patches);
-  for (int side = 0; side < sides; ++side) {
+  for (const double y : rail_places(in)) {
     ports.col(column).setZero();
-    const double y = (in.whole_width && side == 0 ? -0.5 : 0.5) * s.rail_distance;
     for (const LinkEnd& end : beam.at(y, 0, 1)) ports(end.port, column) = end.weight;
     ++column;
   }
   return {MatrixXd(made.mass), MatrixXd(made.damping), MatrixXd(made.stiffness), made.load,
           ports.sparseView()};
+}
+
+Beam slab_beam(const TrackInput& in, double start, int fastenings) {
+  const Slab& s = in.slab;
+  const double width = in.whole_width ? s.width : s.width / 2, area = width * s.depth;
+  const double shear = 10 * (1 + s.poisson) / (12 + 11 * s.poisson) * area;
+  return {{s.young, width * std::pow(s.depth, 3) / 12, area, s.density, shear, s.poisson, s.damping},
+          even_nodes(start, start + fastenings * in.spacing, 2 * fastenings),
+          BeamEnd::simple,
+          BeamEnd::simple};
 }
 
 /// The share of a patch in the law of a half of a sleeper.
@@ -147,21 +207,18 @@ void TrackModel::add_ground(Zone& zone, int number) {
 
 void TrackModel::add_bridge(const Zone& zone, int number) {
   if (zone.sleepers < 1) return;
-  const Slab& s = input_.slab;
-  const double width = s.width * sides() / 2, area = width * s.depth;
-  const double shear = 10 * (1 + s.poisson) / (12 + 11 * s.poisson) * area;
-  const double start = next_x_ - input_.spacing / 2;
-  const Beam beam({s.young, width * std::pow(s.depth, 3) / 12, area, s.density, shear, s.poisson, s.damping},
-                  even_nodes(start, start + zone.sleepers * input_.spacing, 2 * zone.sleepers),
-                  BeamEnd::simple, BeamEnd::simple);
-  const Index first = system_.add(std::make_unique<SparsePart>(beam.structure(0)));
+  const int sides = this->sides();
+  const bool solid = input_.slab.solid;
+  const Beam beam = slab_beam(input_, next_x_ - input_.spacing / 2, zone.sleepers);
+  const Index first = solid ? system_.add(std::make_unique<DensePart>(solid_slab(input_, zone.sleepers)))
+                            : system_.add(std::make_unique<SparsePart>(beam.structure(0)));
   for (int k = 0; k < zone.sleepers; ++k, next_x_ += input_.spacing) {
-    const Index seat = first + beam.port(static_cast<std::size_t>(2 * k + 1));
+    const Index seat = first + (solid ? k * sides : beam.port(static_cast<std::size_t>(2 * k + 1)));
     Support support{next_x_, number, system_.links(), -1, 0, seat, 0};
-    for (int side = 0; side < sides(); ++side) {
+    for (int side = 0; side < sides; ++side) {
       std::vector<LinkEnd> ends = rail_.at(next_x_, rail_port(0, side), -1);
       support.rail_port = ends.front().port;
-      ends.push_back({seat, 1.0});
+      ends.push_back({solid ? seat + side : seat, 1.0});
       system_.add(Link{input_.fastener, std::move(ends), 0});
     }
     supports_.push_back(support);

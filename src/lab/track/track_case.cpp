@@ -30,6 +30,11 @@ fem::Support support_of(const std::string& word) {
   return fem::Support::absorbing;
 }
 
+fem::HexKind kind_of_hexahedra(const std::string& word) {
+  if (word == "full") return fem::HexKind::full;
+  return word == "b_bar" ? fem::HexKind::b_bar : fem::HexKind::incompatible;
+}
+
 fem::Elastic solid(const SolidInput& in) {
   return {in.young, in.poisson, in.density};
 }
@@ -252,10 +257,22 @@ fem::TrackInput track_input(const TrackCaseInput& in) {
   model.elements_per_bay = t.rail.elements;
   model.clamped_rail_ends = t.rail.ends == "clamped";
   model.fastener = {t.fastening.compression, t.fastening.tension, t.fastening.damping};
-  model.sleeper = {t.sleeper.length,        t.sleeper.width,    t.sleeper.height,
-                   t.sleeper.young,         t.sleeper.poisson,  t.sleeper.density,
-                   t.sleeper.rail_distance, t.sleeper.elements, t.sleeper.patches};
-  model.slab = {t.slab.width, t.slab.depth, t.slab.young, t.slab.poisson, t.slab.density, t.slab.damping};
+  model.sleeper = {t.sleeper.length,        t.sleeper.width,
+                   t.sleeper.height,        t.sleeper.young,
+                   t.sleeper.poisson,       t.sleeper.density,
+                   t.sleeper.rail_distance, t.sleeper.elements,
+                   t.sleeper.patches,       t.sleeper.model == "solid",
+                   t.sleeper.element,       kind_of_hexahedra(t.sleeper.hexahedra),
+                   t.sleeper.seat};
+  model.slab = {t.slab.width,
+                t.slab.depth,
+                t.slab.young,
+                t.slab.poisson,
+                t.slab.density,
+                t.slab.damping,
+                t.slab.model == "solid",
+                t.slab.element,
+                kind_of_hexahedra(t.slab.hexahedra)};
   const double car = 4 * v.axle_load - 2 * v.bogie_mass - 4 * v.wheelset_mass;
   model.vehicle = {car / 2,
                    car / 2 * v.car_gyration * v.car_gyration,

@@ -31,6 +31,8 @@ struct SleeperInput {
   double rail_distance = 1.5;
   double contact = 1.2e9;
   int elements = 16, patches = 6;
+  std::string model = "beam", hexahedra = "incompatible";
+  double element = 0.075, seat = 0.14;
 };
 
 struct SolidInput {
@@ -76,6 +78,8 @@ struct SlabInput {
   double width = 4, depth = 1.6;
   double young = 3.5e10, poisson = 0.2, density = 2500;
   double damping = 1e-4;
+  std::string model = "beam", hexahedra = "incompatible";
+  double element = 0.3;
 };
 
 struct VehicleInput {

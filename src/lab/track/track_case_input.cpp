@@ -37,6 +37,20 @@ void declare(Fields& f, FasteningInput& in) {
   f.quantity("damping", in.damping, Dimension::damping, not_negative, "vertical, both ways");
 }
 
+/// What a piece of concrete is made of.
+template <class Input>
+void declare_model(Fields& f, Input& in) {
+  f.choice("model", in.model, {"beam", "solid"},
+           "beam: Timoshenko's; solid: hexahedra, seen through their static shapes and three Krylov shapes "
+           "of each");
+  f.choice("hexahedra", in.hexahedra, {"incompatible", "b_bar", "full"},
+           "of model solid: with incompatible modes, exact in bending; by selective reduced integration, as "
+           "published; "
+           "or in full");
+  f.quantity("element", in.element, Dimension::length, positive,
+             "of model solid: edges of the hexahedra are no longer than that");
+}
+
 void declare(Fields& f, SleeperInput& in) {
   f.quantity("length", in.length, Dimension::length, positive, "across the track");
   f.quantity("width", in.width, Dimension::length, positive, "along the track");
@@ -53,6 +67,9 @@ void declare(Fields& f, SleeperInput& in) {
   f.integer("elements", in.elements, {.at_least = 2, .at_most = 256}, "of the half of a sleeper");
   f.integer("patches", in.patches, {.at_least = 1, .at_most = 64},
             "strips in which the half of a sleeper touches the ballast, each by itself");
+  declare_model(f, in);
+  f.quantity("seat", in.seat, Dimension::length, positive,
+             "of model solid: part of a sleeper's length under a rail; the foot of UIC 54");
   f.check(in.rail_distance < in.length, "rail_distance", "the rails lie beyond the sleeper's ends",
           "give less than the sleeper's length");
 }
@@ -145,6 +162,7 @@ void declare(Fields& f, SlabInput& in) {
   f.number("poisson", in.poisson, poisson_range, "Poisson's ratio");
   f.quantity("density", in.density, Dimension::density, positive, "not published; reinforced concrete");
   f.quantity("damping", in.damping, Dimension::time, not_negative, "C = damping K; not published");
+  declare_model(f, in);
 }
 
 void declare(Fields& f, VehicleInput& in) {
