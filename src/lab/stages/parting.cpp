@@ -43,7 +43,7 @@ void soften(const Simulation& sim, double share, PairTable& pairs) {
 
 }  // namespace
 
-void Parting::open(Simulation& sim, double share_of_stiffness) {
+void Parting::open(Simulation& sim, double share_of_stiffness, double scaled_share) {
   start_ = sim.state.time;
   overlap_limit_ = sim.model.limits.overlap;
   smallest_ = std::numeric_limits<double>::infinity();
@@ -55,7 +55,7 @@ void Parting::open(Simulation& sim, double share_of_stiffness) {
   Limits& limits = sim.model.limits;
   limits.overlap = limits.speed = limits.outside = std::numeric_limits<double>::infinity();
   sim.model.pairs = sim.model.pairs.with_friction_up_to(0);
-  sim.scale_step();
+  sim.scale_step(scaled_share);
   soften(sim, share_of_stiffness, sim.model.pairs);
   sim.changed();
 }

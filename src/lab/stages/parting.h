@@ -20,8 +20,9 @@ Overlaps overlaps_of_stones(const Simulation& sim);
 class Parting {
  public:
   /// Stones of materials that no wall is made of meet each other with this share of their stiffness: they
-  /// give way to each other rather than press each other through a wall of triangles.
-  void open(Simulation& sim, double share_of_stiffness = 1);
+  /// give way to each other rather than press each other through a wall of triangles. This share of all
+  /// stones has its inertia raised: with all of them large stones part in as many steps as small ones.
+  void open(Simulation& sim, double share_of_stiffness = 1, double scaled_share = usual_scaled_share);
 
   /// No point of a stone moves in a step by more than a hundredth of the smallest stone's radius, and from
   /// time to time all stand still: overlaps of any size come apart by small steps.

@@ -18,6 +18,7 @@ struct ScatterInput : StageInput {
   Selection where;
   double mean_overlap = 0.01;
   double time_limit = 1;  // [s]
+  double scaled_share = usual_scaled_share;
   bool is_room(const Simulation& sim, const Vec3& point) const {
     return where.contains(sim, point) && is_in_room(sim, point);
   }
@@ -52,6 +53,10 @@ void declare(Fields& f, ScatterInput& in) {
            "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
+  f.number("scaled_share", in.scaled_share, {.above = 0, .at_most = 1},
+           "share of the stones that get more inertia while they part, those with the shortest steps of "
+           "their own; 1 for wide "
+           "gradings: large stones move as quickly as small ones");
 }
 
 /// Places stones anywhere in the container, overlapping each other but no wall, and lets them part: without
@@ -65,7 +70,7 @@ class Scatter : public Stage {
     Rng rng = in_.numbers(sim, "places");
     const StoneSet set = sim.stone_set(in_.set);
     for (double size : sizes_) place(sim, set, size, rng);
-    parting_.open(sim);
+    parting_.open(sim, 1, in_.scaled_share);
   }
 
   void control(Simulation& sim) override { parting_.control(sim); }
