@@ -48,11 +48,18 @@ Summary run_one(const Document& document, const RunOptions& options) {
 
 }  // namespace
 
-Summary run_and_compare(const std::string& name, const std::filesystem::path& out) {
+Summary run_short_form(const std::string& name, const std::filesystem::path& out,
+                       const std::vector<std::string>& changes) {
   const std::filesystem::path folder = std::filesystem::path(TRACKBED_ROOT) / "cases" / name;
-  const auto expected = read_input<Expected>(folder / "expected.toml");
-  const Document document(folder / "case.toml", expected.set);
-  const Summary summary = run_one(document, {.out = out, .threads = 1, .quiet = true});
+  std::vector<std::string> set = read_input<Expected>(folder / "expected.toml").set;
+  set.insert(set.end(), changes.begin(), changes.end());
+  return run_one(Document(folder / "case.toml", set), {.out = out, .threads = 1, .quiet = true});
+}
+
+Summary run_and_compare(const std::string& name, const std::filesystem::path& out) {
+  const auto expected =
+      read_input<Expected>(std::filesystem::path(TRACKBED_ROOT) / "cases" / name / "expected.toml");
+  const Summary summary = run_short_form(name, out, {});
   for (const ExpectedMeasure& m : expected.measures)
     EXPECT_NEAR(value_of(summary.measures, m.name), m.value, m.tolerance) << m.name << ": " << m.reason;
   return summary;

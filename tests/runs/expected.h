@@ -23,6 +23,10 @@ struct Expected {
 
 void declare(Fields& f, Expected& in);
 
+/// Runs the short form of cases/NAME into the folder, with further changes.
+Summary run_short_form(const std::string& name, const std::filesystem::path& out,
+                       const std::vector<std::string>& changes);
+
 /// Runs the short form of cases/NAME into the folder and compares every measure.
 Summary run_and_compare(const std::string& name, const std::filesystem::path& out);
 
