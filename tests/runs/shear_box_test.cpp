@@ -213,6 +213,7 @@ TEST(box_stiffness, long_short_form_gives_what_the_case_expects) {
   const TemporaryFolder out;
   const Summary summary = run_and_compare("box-stiffness", out.path);
   const StageSummary& press = stage_of(summary, "press");
+  EXPECT_EQ(value_of(stage_of(summary, "plate").results, "removed"), 0);
   EXPECT_GE(value_of(press.results, "force_peak"), value_of(press.results, "force"));
   EXPECT_GT(value_of(press.results, "force_at_2_mm"), value_of(press.results, "force_at_1_mm"));
 }
