@@ -17,6 +17,7 @@
 
 namespace trackbed {
 
+/// Of the stones whose inertia a scaled step raises: where graded ballast comes to rest in fewest steps.
 inline constexpr double usual_scaled_share = 0.5;
 
 /// Shapes of one kind and their material: what stones are drawn from.
