@@ -245,19 +245,11 @@ double stable_time_step(const Soil& soil) {
   return 2 / w * (std::sqrt(1 + ratio * ratio) - ratio);
 }
 
-double ExplicitSoil::stable_time_step() const {
-  return fem::stable_time_step(parts_->soil);
-}
-
-double ExplicitSoil::node_mass() const {
-  const Soil& s = parts_->soil;
-  return s.mass(1, s.footing_section_nodes[static_cast<std::size_t>(s.nodes_across / 2)]);
-}
-
 void ExplicitSoil::start(const Eigen::VectorXd& forces, double dt) {
-  if (!(dt > 0) || dt > stable_time_step())
+  const double longest = stable_time_step(parts_->soil);
+  if (!(dt > 0) || dt > longest)
     throw RunError(fmt::format("a time step of {:.4g} ms is too long for the ground: {:.4g} ms at most",
-                               1e3 * dt, 1e3 * stable_time_step()));
+                               1e3 * dt, 1e3 * longest));
   parts_->dt = dt;
   parts_->make_updates();
   parts_->find_rest(forces);

@@ -8,7 +8,8 @@
 namespace trackbed::fem {
 
 /// The longest stable step of central differences without a margin [s]: 2/w of the free elements' greatest
-/// frequency, a bound from below, shortened for stiffness damping.
+/// frequency, a bound from below, shortened for stiffness damping. That of the soil alone: springs of a
+/// contact on its nodes shorten it further.
 double stable_time_step(const Soil&);
 
 /// u(n+1) from u(n), u(n-1) and the forces at n:
@@ -20,10 +21,6 @@ class ExplicitSoil {
  public:
   explicit ExplicitSoil(const Soil&);
   ~ExplicitSoil();
-
-  /// That of the soil alone; springs of a contact on nodes of mass `node_mass` shorten it further.
-  double stable_time_step() const;
-  double node_mass() const;  // lumped mass of an inner node of a footing [kg]
 
   /// At rest under constant vertical forces on footing nodes [N] (conjugate gradients, to a residual of 1e-9
   /// of the forces); all further steps last dt [s]. Throws RunError for dt beyond stable_time_step, or when

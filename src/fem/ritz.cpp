@@ -1,10 +1,30 @@
 #include "fem/ritz.h"
 
+#include <cmath>
 #include <utility>
 
 #include "fem/blas.h"
 
 namespace trackbed::fem {
+
+MassBasis::MassBasis(Mass mass, Eigen::Index rows, Eigen::Index most)
+    : mass_(std::move(mass)), all_(rows, most) {}
+
+bool MassBasis::add(Eigen::VectorXd column) {
+  constexpr double same = 1e-6;
+  auto norm = [&] { return std::sqrt(column.dot(mass_(column))); };
+  const double before = norm();
+  if (before == 0) return false;
+  column /= before;
+  for (int again = 0; again < 2; ++again) {
+    const Eigen::VectorXd parts = columns().transpose() * mass_(column);
+    column.noalias() -= columns() * parts;
+  }
+  const double left = norm();
+  if (left < same) return false;
+  all_.col(count_++) = column / left;
+  return true;
+}
 
 RitzModes ritz_modes(Eigen::MatrixXd mass, const Eigen::MatrixXd& stiffness) {
   constexpr double same = 1e-10;

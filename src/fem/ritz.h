@@ -2,8 +2,27 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
 namespace trackbed::fem {
+
+/// Columns orthonormal in mass, each new one to all before it (Gram and Schmidt, twice).
+class MassBasis {
+ public:
+  using Mass = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;  // M v
+
+  /// For `most` columns of `rows` at most.
+  MassBasis(Mass mass, Eigen::Index rows, Eigen::Index most);
+
+  /// Tells whether it was taken: zeros are not, nor what those before make up but for 1e-6 of its norm.
+  bool add(Eigen::VectorXd column);
+  auto columns() const { return all_.leftCols(count_); }
+
+ private:
+  Mass mass_;
+  Eigen::MatrixXd all_;
+  Eigen::Index count_ = 0;
+};
 
 /// The modes of a structure within given shapes, orthonormal in mass.
 struct RitzModes {

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "fem/assembly.h"
+#include "fem/ritz.h"
 #include "fem/sparse_cholesky.h"
 
 namespace trackbed::fem {
@@ -31,24 +32,29 @@ class Window {
 
   /// The columns of footings whose windows this is.
   std::vector<SoilColumns> columns(const std::vector<int>& footings, int krylov) const {
-    const Eigen::Index shapes = soil_.shapes.cols(), each = shapes * (1 + krylov);
-    std::vector<SoilColumns> sets;
+    const Eigen::Index shapes = soil_.shapes.cols();
+    const MassBasis empty([&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return mass_.cwiseProduct(v); },
+                          mass_.size(), shapes*(1 + krylov));
+    std::vector<MassBasis> bases(footings.size(), empty);
     Eigen::MatrixXd right(free_.size(), shapes * static_cast<Eigen::Index>(footings.size()));
     right.setZero();
-    for (std::size_t f = 0; f < footings.size(); ++f) {
-      const int plane = soil_.first_plane[static_cast<std::size_t>(footings[f])] - first_;
-      sets.push_back({Eigen::MatrixXd(mass_.size(), each), {}, plane});
+    for (std::size_t f = 0; f < footings.size(); ++f)
       press(footings[f], right.middleCols(static_cast<Eigen::Index>(f) * shapes, shapes));
-    }
     for (int level = 0; level <= krylov; ++level) {
       const Eigen::MatrixXd solution = factor_.solve(right);
       for (std::size_t f = 0; f < footings.size(); ++f) {
         const Eigen::Index at = static_cast<Eigen::Index>(f) * shapes;
-        add_block(sets[f].values, level * shapes, solution.middleCols(at, shapes));
-        for (Eigen::Index c = 0; c < shapes; ++c)
-          right.col(at + c) = to_free(mass_.cwiseProduct(sets[f].values.col(level * shapes + c)));
+        for (Eigen::Index c = 0; c < shapes; ++c) {
+          if (!bases[f].add(to_nodes(solution.col(at + c), free_)))
+            throw InputError(fmt::format("krylov is {}; the mesh has no more shapes than {}", krylov, level));
+          right.col(at + c) = to_free(mass_.cwiseProduct(bases[f].columns().rightCols<1>()));
+        }
       }
     }
+    std::vector<SoilColumns> sets;
+    for (std::size_t f = 0; f < footings.size(); ++f)
+      sets.push_back(
+          {bases[f].columns(), {}, soil_.first_plane[static_cast<std::size_t>(footings[f])] - first_});
 #pragma omp parallel for schedule(dynamic)
     for (std::size_t f = 0; f < sets.size(); ++f) sets[f].forces = stiffness_ * sets[f].values;
     return sets;
@@ -82,20 +88,6 @@ class Window {
       for (int axis = 0; axis < 3; ++axis)
         if (free_(n, axis) >= 0) v[free_(n, axis)] = all[3 * n + axis];
     return v;
-  }
-
-  /// Puts columns at `from`, made orthonormal in mass to all before them (Gram and Schmidt, twice).
-  void add_block(Eigen::MatrixXd& values, Eigen::Index from, const Eigen::MatrixXd& solution) const {
-    for (Eigen::Index c = 0; c < solution.cols(); ++c) {
-      Eigen::VectorXd v = to_nodes(solution.col(c), free_);
-      v /= std::sqrt(v.dot(mass_.cwiseProduct(v)));
-      for (int again = 0; again < 2; ++again) {
-        const Eigen::VectorXd weighted = mass_.cwiseProduct(v);
-        const Eigen::VectorXd parts = values.leftCols(from + c).transpose() * weighted;
-        v.noalias() -= values.leftCols(from + c) * parts;
-      }
-      values.col(from + c) = v / std::sqrt(v.dot(mass_.cwiseProduct(v)));
-    }
   }
 
   const Soil& soil_;

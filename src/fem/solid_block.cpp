@@ -110,36 +110,6 @@ class BlockModel {
   Freedoms free_;
 };
 
-/// Static columns of the ports and Krylov columns of those before, each block made orthonormal in mass to all
-/// before it.
-class Shapes {
- public:
-  Shapes(const SparseMatrix& mass, Index most) : mass_(mass), all_(mass.rows(), most) {}
-
-  void add(const MatrixXd& columns) {
-    for (Index c = 0; c < columns.cols(); ++c) {
-      VectorXd v = columns.col(c);
-      const double before = norm(v);
-      if (before == 0) continue;
-      v /= before;
-      for (int again = 0; again < 2; ++again) {
-        const VectorXd weighted = mass_ * v;
-        v -= all_.leftCols(count_) * (all_.leftCols(count_).transpose() * weighted).eval();
-      }
-      const double left = norm(v);
-      if (left < 1e-6) continue;  // the others make it up
-      all_.col(count_++) = v / left;
-    }
-  }
-  MatrixXd get() const { return all_.leftCols(count_); }
-
- private:
-  double norm(const VectorXd& v) const { return std::sqrt(v.dot(mass_ * v)); }
-  const SparseMatrix& mass_;
-  MatrixXd all_;
-  Index count_ = 0;
-};
-
 }  // namespace
 
 Structure<MatrixXd> reduce_block(const SolidBlock& block, const std::vector<FacePatch>& patches,
@@ -152,14 +122,18 @@ Structure<MatrixXd> reduce_block(const SolidBlock& block, const std::vector<Face
   const double shift = block.on_supports ? 0 : std::pow(2 * std::numbers::pi * 50, 2);
   const Eigen::SimplicialLLT<SparseMatrix> factor(SparseMatrix(model.stiffness + shift * model.mass));
   if (factor.info() != Eigen::Success) throw InputError("a block of hexahedra is not held");
-  Shapes shapes(model.mass, 3 + ports.cols() * (1 + krylov));
-  if (!block.on_supports) shapes.add(rigid);
+  MassBasis shapes([&](const VectorXd& v) -> VectorXd { return model.mass * v; }, rigid.rows(),
+                   3 + ports.cols() * (1 + krylov));
+  auto add = [&](const MatrixXd& columns) {
+    for (Index c = 0; c < columns.cols(); ++c) shapes.add(columns.col(c));
+  };
+  if (!block.on_supports) add(rigid);
   MatrixXd columns = factor.solve(ports);
   for (int level = 0; level <= krylov; ++level) {
-    shapes.add(columns);
+    add(columns);
     columns = factor.solve(MatrixXd(model.mass * columns));
   }
-  const MatrixXd v = shapes.get();
+  const MatrixXd v = shapes.columns();
   const auto [stiffness, of_shapes] =
       ritz_modes(v.transpose() * (model.mass * v).eval(), v.transpose() * (model.stiffness * v).eval());
   const MatrixXd modes = v * of_shapes;

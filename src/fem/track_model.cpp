@@ -52,9 +52,9 @@ Structure<MatrixXd> solid_sleeper(const TrackInput& in) {
   const double half = s.length / 2, start = in.whole_width ? -half : 0;
   SolidBlock block{{-s.width / 2, start, 0},
                    {s.width / 2, half, s.height},
-                   s.element,
+                   s.model.element,
                    {s.young, s.poisson, s.density},
-                   s.kind,
+                   s.model.kind,
                    !in.whole_width};
   std::vector<FacePatch> ports;
   const int patches = (in.whole_width ? 2 : 1) * s.patches;
@@ -72,9 +72,9 @@ Structure<MatrixXd> solid_slab(const TrackInput& in, int fastenings) {
   const double half = s.width / 2;
   SolidBlock block{{0, in.whole_width ? -half : 0, 0},
                    {fastenings * in.spacing, half, s.depth},
-                   s.element,
+                   s.model.element,
                    {s.young, s.poisson, s.density},
-                   s.kind,
+                   s.model.kind,
                    !in.whole_width,
                    true};
   std::vector<FacePatch> ports;
@@ -90,7 +90,7 @@ Structure<MatrixXd> solid_slab(const TrackInput& in, int fastenings) {
 /// A sleeper or its half; ports: the patches from low y to high y, then the rail seats.
 Structure<MatrixXd> sleeper_structure(const TrackInput& in) {
   const Sleeper& s = in.sleeper;
-  if (s.solid) return solid_sleeper(in);
+  if (s.model.solid) return solid_sleeper(in);
   const double half = s.length / 2, area = s.width * s.height;
   const double shear = 10 * (1 + s.poisson) / (12 + 11 * s.poisson) * area;  // Cowper (1966), a rectangle
   const BeamSection section{s.young, s.width * std::pow(s.height, 3) / 12, area, s.density, shear, s.poisson,
@@ -205,20 +205,31 @@ void TrackModel::add_ground(Zone& zone, int number) {
   }
 }
 
+/// The ports under the rails, those of one fastening after those of another; a beam has one for both rails.
+std::vector<Index> TrackModel::add_slab(int fastenings) {
+  std::vector<Index> seats;
+  if (input_.slab.model.solid) {
+    const Index first = system_.add(std::make_unique<DensePart>(solid_slab(input_, fastenings)));
+    for (int k = 0; k < fastenings * sides(); ++k) seats.push_back(first + k);
+    return seats;
+  }
+  const Beam beam = slab_beam(input_, next_x_ - input_.spacing / 2, fastenings);
+  const Index first = system_.add(std::make_unique<SparsePart>(beam.structure(0)));
+  for (int k = 0; k < fastenings; ++k)
+    for (int side = 0; side < sides(); ++side)
+      seats.push_back(first + beam.port(static_cast<std::size_t>(2 * k + 1)));
+  return seats;
+}
+
 void TrackModel::add_bridge(const Zone& zone, int number) {
   if (zone.sleepers < 1) return;
-  const int sides = this->sides();
-  const bool solid = input_.slab.solid;
-  const Beam beam = slab_beam(input_, next_x_ - input_.spacing / 2, zone.sleepers);
-  const Index first = solid ? system_.add(std::make_unique<DensePart>(solid_slab(input_, zone.sleepers)))
-                            : system_.add(std::make_unique<SparsePart>(beam.structure(0)));
+  const std::vector<Index> seats = add_slab(zone.sleepers);
   for (int k = 0; k < zone.sleepers; ++k, next_x_ += input_.spacing) {
-    const Index seat = first + (solid ? k * sides : beam.port(static_cast<std::size_t>(2 * k + 1)));
-    Support support{next_x_, number, system_.links(), -1, 0, seat, 0};
-    for (int side = 0; side < sides; ++side) {
+    Support support{next_x_, number, system_.links(), -1, 0, seats[at(k * sides())], 0};
+    for (int side = 0; side < sides(); ++side) {
       std::vector<LinkEnd> ends = rail_.at(next_x_, rail_port(0, side), -1);
       support.rail_port = ends.front().port;
-      ends.push_back({solid ? seat + side : seat, 1.0});
+      ends.push_back({seats[at(k * sides() + side)], 1.0});
       system_.add(Link{input_.fastener, std::move(ends), 0});
     }
     supports_.push_back(support);

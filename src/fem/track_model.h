@@ -17,30 +17,33 @@
 
 namespace trackbed::fem {
 
-/// A whole sleeper: a Timoshenko beam across the track, or hexahedra.
+/// How a piece of concrete is modelled: as a Timoshenko beam, or of hexahedra.
+struct ConcreteModel {
+  bool solid = false;
+  double element = 0;                    // edges of hexahedra [m]
+  HexKind kind = HexKind::incompatible;  // and how they strain
+};
+
+/// A whole sleeper: across the track.
 struct Sleeper {
   double length = 2.4, width = 0.24, height = 0.2;       // across, along the track, up [m]
   double young = 3.6e10, poisson = 0.2, density = 2400;  // [Pa], [-], [kg/m^3]
   double rail_distance = 1.5;                            // between the rails' middles [m]
   int elements = 16;                                     // of a half
   int patches = 6;  // strips of equal length in which a half touches the ground
-  bool solid = false;
-  double element = 0.075;                // edges of hexahedra [m]
-  HexKind kind = HexKind::incompatible;  // and how they strain
-  double seat = 0.14;                    // of a solid one: part of its length under the foot of a rail [m]
+  ConcreteModel model{false, 0.075};
+  double seat = 0.14;  // of a solid one: part of its length under the foot of a rail [m]
 
   double mass() const { return length * width * height * density; }
 };
 
-/// A simply supported slab: a Timoshenko beam along the track, or hexahedra. Displacements count from its
+/// A simply supported slab along the track. Displacements count from its
 /// rest under its own weight.
 struct Slab {
   double width = 4, depth = 1.6;                         // of the whole section [m]
   double young = 3.5e10, poisson = 0.2, density = 2500;  // [Pa], [-], [kg/m^3]
   double damping = 0;                                    // share of the stiffness [s]
-  bool solid = false;
-  double element = 0.3;                  // edges of hexahedra [m]
-  HexKind kind = HexKind::incompatible;  // and how they strain
+  ConcreteModel model{false, 0.3};
 };
 
 /// Springs under a half of a sleeper in place of ground: each patch stands on a mass with spring and dashpot.
@@ -126,6 +129,7 @@ class TrackModel {
   int sides() const { return input_.whole_width ? 2 : 1; }
   void add_ground(Zone& zone, int number);
   void add_bridge(const Zone& zone, int number);
+  std::vector<Index> add_slab(int fastenings);
   void add_train();
   void place_train(double first_wheel);
   Index rail_port(Index port, int side) const { return first_rail_ + side * rail_.ports() + port; }

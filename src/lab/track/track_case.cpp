@@ -30,9 +30,11 @@ fem::Support support_of(const std::string& word) {
   return fem::Support::absorbing;
 }
 
-fem::HexKind kind_of_hexahedra(const std::string& word) {
-  if (word == "full") return fem::HexKind::full;
-  return word == "b_bar" ? fem::HexKind::b_bar : fem::HexKind::incompatible;
+fem::ConcreteModel model_of(const ConcreteInput& in) {
+  const fem::HexKind kind = in.hexahedra == "full"    ? fem::HexKind::full
+                            : in.hexahedra == "b_bar" ? fem::HexKind::b_bar
+                                                      : fem::HexKind::incompatible;
+  return {in.model == "solid", in.element, kind};
 }
 
 fem::Elastic solid(const SolidInput& in) {
@@ -129,6 +131,7 @@ fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const std::filesys
   return zone;
 }
 
+/// Of steps too long for ground in full order.
 void check_step(const Document& document, double step, const fem::Soil& soil) {
   const double longest = fem::stable_time_step(soil);
   if (step <= longest) return;
@@ -261,8 +264,7 @@ fem::TrackInput track_input(const TrackCaseInput& in) {
                    t.sleeper.height,        t.sleeper.young,
                    t.sleeper.poisson,       t.sleeper.density,
                    t.sleeper.rail_distance, t.sleeper.elements,
-                   t.sleeper.patches,       t.sleeper.model == "solid",
-                   t.sleeper.element,       kind_of_hexahedra(t.sleeper.hexahedra),
+                   t.sleeper.patches,       model_of(t.sleeper.concrete),
                    t.sleeper.seat};
   model.slab = {t.slab.width,
                 t.slab.depth,
@@ -270,9 +272,7 @@ fem::TrackInput track_input(const TrackCaseInput& in) {
                 t.slab.poisson,
                 t.slab.density,
                 t.slab.damping,
-                t.slab.model == "solid",
-                t.slab.element,
-                kind_of_hexahedra(t.slab.hexahedra)};
+                model_of(t.slab.concrete)};
   const double car = 4 * v.axle_load - 2 * v.bogie_mass - 4 * v.wheelset_mass;
   model.vehicle = {car / 2,
                    car / 2 * v.car_gyration * v.car_gyration,

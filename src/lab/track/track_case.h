@@ -25,14 +25,20 @@ struct FasteningInput {
   double compression = 1.2e8, tension = 1.2e11, damping = 5e4;
 };
 
+/// How a piece of concrete is modelled.
+struct ConcreteInput {
+  std::string model = "beam", hexahedra = "incompatible";
+  double element = 0;
+};
+
 struct SleeperInput {
   double length = 2.4, width = 0.24, height = 0.2;
   double young = 3.6e10, poisson = 0.2, density = 2400;
   double rail_distance = 1.5;
   double contact = 1.2e9;
   int elements = 16, patches = 6;
-  std::string model = "beam", hexahedra = "incompatible";
-  double element = 0.075, seat = 0.14;
+  ConcreteInput concrete{.element = 0.075};
+  double seat = 0.14;
 };
 
 struct SolidInput {
@@ -78,8 +84,7 @@ struct SlabInput {
   double width = 4, depth = 1.6;
   double young = 3.5e10, poisson = 0.2, density = 2500;
   double damping = 1e-4;
-  std::string model = "beam", hexahedra = "incompatible";
-  double element = 0.3;
+  ConcreteInput concrete{.element = 0.3};
 };
 
 struct VehicleInput {

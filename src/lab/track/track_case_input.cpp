@@ -37,9 +37,7 @@ void declare(Fields& f, FasteningInput& in) {
   f.quantity("damping", in.damping, Dimension::damping, not_negative, "vertical, both ways");
 }
 
-/// What a piece of concrete is made of.
-template <class Input>
-void declare_model(Fields& f, Input& in) {
+void declare(Fields& f, ConcreteInput& in) {
   f.choice("model", in.model, {"beam", "solid"},
            "beam: Timoshenko's; solid: hexahedra, seen through their static shapes and three Krylov shapes "
            "of each");
@@ -67,7 +65,7 @@ void declare(Fields& f, SleeperInput& in) {
   f.integer("elements", in.elements, {.at_least = 2, .at_most = 256}, "of the half of a sleeper");
   f.integer("patches", in.patches, {.at_least = 1, .at_most = 64},
             "strips in which the half of a sleeper touches the ballast, each by itself");
-  declare_model(f, in);
+  declare(f, in.concrete);
   f.quantity("seat", in.seat, Dimension::length, positive,
              "of model solid: part of a sleeper's length under a rail; the foot of UIC 54");
   f.check(in.rail_distance < in.length, "rail_distance", "the rails lie beyond the sleeper's ends",
@@ -162,7 +160,7 @@ void declare(Fields& f, SlabInput& in) {
   f.number("poisson", in.poisson, poisson_range, "Poisson's ratio");
   f.quantity("density", in.density, Dimension::density, positive, "not published; reinforced concrete");
   f.quantity("damping", in.damping, Dimension::time, not_negative, "C = damping K; not published");
-  declare_model(f, in);
+  declare(f, in.concrete);
 }
 
 void declare(Fields& f, VehicleInput& in) {

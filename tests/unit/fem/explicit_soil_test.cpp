@@ -74,7 +74,7 @@ TEST(ExplicitSoil, StepBoundIsThatOfTheFreeElement) {
       to_freedoms(lumped_node_masses(mesh, soil.materials), free).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = inverse.asDiagonal() * Eigen::MatrixXd(k) * inverse.asDiagonal();
   const double w = std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scaled).eigenvalues().maxCoeff());
-  const double bound = ExplicitSoil(soil).stable_time_step();
+  const double bound = stable_time_step(soil);
   EXPECT_LT(bound, 2 / w);
   EXPECT_GT(bound, 0.8 * 2 / w);
 }
@@ -88,11 +88,10 @@ TEST(ExplicitSoil, StepBoundsOfTheMaterials) {
   in.ballast_depth = 0.3;
   in.subgrade_depth = 0.3;
   in.sleepers = 1;
-  EXPECT_NEAR(ExplicitSoil(make_soil(in)).stable_time_step(), 0.189e-3, 0.0005e-3);
+  EXPECT_NEAR(stable_time_step(make_soil(in)), 0.189e-3, 0.0005e-3);
   in.subgrade = in.ballast;
-  EXPECT_NEAR(ExplicitSoil(make_soil(in)).stable_time_step(), 0.225e-3, 0.0005e-3);
+  EXPECT_NEAR(stable_time_step(make_soil(in)), 0.225e-3, 0.0005e-3);
   ExplicitSoil soil(make_soil(in));
-  EXPECT_NEAR(soil.node_mass(), 1800 * std::pow(0.075, 3) / 2, 1e-12);
   EXPECT_THROW(soil.start(random_forces(make_soil(in)), 0.23e-3), RunError);
 }
 
@@ -100,7 +99,7 @@ TEST(ExplicitSoil, RestStaysRest) {
   const Soil soil = make_soil(strip_of_soil());
   const Eigen::VectorXd forces = random_forces(soil);
   ExplicitSoil moving(soil);
-  moving.start(forces, moving.stable_time_step());
+  moving.start(forces, stable_time_step(soil));
   const Eigen::VectorXd rest = moving.displacement();
   for (int i = 0; i < 200; ++i) moving.step(forces);
   EXPECT_LT((moving.displacement() - rest).cwiseAbs().maxCoeff(), 1e-8 * rest.cwiseAbs().maxCoeff());
@@ -116,7 +115,7 @@ TEST(ExplicitSoil, SameBitsOnAnyNumberOfThreads) {
   for (int threads : {1, 2, 3}) {
     omp_set_num_threads(threads);
     ExplicitSoil moving(soil);
-    moving.start(forces, moving.stable_time_step());
+    moving.start(forces, stable_time_step(soil));
     for (int i = 0; i < 20; ++i) moving.step(Eigen::VectorXd(0.3 * forces));
     if (threads == 1) first = moving.displacement();
     EXPECT_EQ(moving.displacement(), first);

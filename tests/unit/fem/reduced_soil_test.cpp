@@ -26,7 +26,7 @@ Eigen::VectorXd pressed(const Soil& soil, int footing, int shape) {
 
 Eigen::VectorXd full_rest(const Soil& soil, const Eigen::VectorXd& forces) {
   ExplicitSoil full(soil);
-  full.start(forces, 0.5 * full.stable_time_step());
+  full.start(forces, 0.5 * stable_time_step(soil));
   return full.displacement();
 }
 
