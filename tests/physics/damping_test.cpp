@@ -2,6 +2,7 @@
 // it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -84,6 +85,44 @@ TEST(damping, leaves_rest_alone) {
   scenes::run_until(sim, 0.05);
   EXPECT_NEAR((0.02 - sim.state.clumps.position[0].z()) / 8.71151e-7, 1, 1e-6);
   EXPECT_NEAR((0.02 - sim.state.clumps.position[0].z()) / (sim.state.clumps.mass[0] * 9.81 / 1e6), 1, 1e-9);
+}
+
+/// Mean force that two planes need to carry a ball up with `drift` while they shake it with `shake`, over
+/// that of (27) at full share: alpha m w shake.
+double drag(double alpha, double drift, double shake) {
+  Setting a;
+  a.damping = alpha;
+  a.dashpot.normal = 0.5;  // the ball does not ring where its damping turns
+  a.dt = 0.1 * scenes::contact_time_scale(a);
+  Simulation sim = scenes::make_scene(a);
+  const double held = 1e-4;  // overlap with either plane, that it never leaves
+  const int below = scenes::add_plane(sim, Vec3::Zero(), Vec3::UnitZ());
+  const int above = scenes::add_plane(sim, {0, 0, 2 * (a.radius - held)}, -Vec3::UnitZ());
+  scenes::add_ball(sim, {0, 0, a.radius - held}, {0, 0, drift + shake});
+  const double w = 0.005 / scenes::contact_time_scale(a);  // so slow that the ball goes with the planes
+  const int steps = static_cast<int>(std::lround(2 * std::numbers::pi / (w * a.dt)));
+  double force = 0;
+  for (int cycle = 0; cycle < 3; ++cycle)
+    for (int k = 0; k < steps; ++k) {
+      for (const int plane : {below, above})
+        sim.state.walls[static_cast<std::size_t>(plane)].velocity.z() =
+            drift + shake * std::cos(2 * std::numbers::pi * k / steps);
+      sim.step();
+      if (cycle > 0)  // the planes' force on the ball is the opposite of what it does to them
+        for (const int plane : {below, above})
+          force -= sim.state.walls[static_cast<std::size_t>(plane)].force.z() / (2 * steps);
+    }
+  return force / (alpha * sim.state.clumps.mass[0] * w * shake);
+}
+
+// A stone that trembles faster than it drifts is dragged as by a dashpot to the ground (27b).
+TEST(damping, drags_what_trembles_as_a_dashpot_to_the_ground) {
+  for (const double alpha : {0.1, 0.4, 0.7}) {
+    const double whole = 2 / std::numbers::pi / (1 - alpha * alpha);
+    for (const double ratio : {0.1, 0.5, 1.0, 2.0})
+      EXPECT_NEAR(drag(alpha, ratio * 1e-3, 1e-3) / (std::min(ratio, 1.0) * whole), 1, 0.01)
+          << alpha << " " << ratio;
+  }
 }
 
 }  // namespace
