@@ -84,6 +84,7 @@ wall = "box.right"
 velocity = ["0.2 m/s", "0 m/s", "0 m/s"]
 duration = "8 ms"
 probes = ["0.5 mm", "1 mm"]
+mean_over = "0.4 mm"
 levels = ["5 N", "20 N", "1 MN"]
 measures = ["contacts", "box.right.contact_force_max"]
 [[stages]]

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,7 @@ struct MoveInput : StageInput {
   std::optional<double> duration;      // [s]
   std::optional<double> force;         // [N]
   std::vector<double> probes;          // [m]
+  std::optional<double> mean_over;     // [m]
   ConditionsInput conditions;
   LevelsInput levels;
   bool says_when() const { return distance || displacement || duration || force; }
@@ -41,6 +43,9 @@ void declare(Fields& f, MoveInput& in) {
              "stop when the stones push against the motion with this force");
   f.quantities("probes", in.probes, Dimension::length, {.above = 0},
                "distances at which the force against the motion is reported");
+  f.quantity("mean_over", in.mean_over, Dimension::length, {.above = 0},
+             "also report the largest of the force's means over parts of the way as long as that: single "
+             "stones that jam count for less in it");
   declare(f, in.conditions);
   declare(f, in.levels);
   f.check(std::is_sorted(in.probes.begin(), in.probes.end()), "probes", "the distances do not ascend",
@@ -63,6 +68,33 @@ void MoveInput::check(const Document& document, const CaseInput&, const Simulati
       document.fail(here + ".velocity", fmt::format("{} is free to move along {}", wall, "xyz"[a]),
                     "leave that axis out of its `free`: a body is either driven along an axis or free");
 }
+
+/// The largest of a force's means over equal parts of a way. A part that the way ends in does not count.
+class PeakOfMeans {
+ public:
+  void look(double force, double gone, double part) {
+    sum_ += force;
+    ++count_;
+    if (gone < static_cast<double>(parts_ + 1) * part) return;
+    if (const double mean = sum_ / count_; mean > peak_) {
+      peak_ = mean;
+      at_ = (static_cast<double>(parts_) + 0.5) * part;
+    }
+    sum_ = count_ = 0;
+    while (gone >= static_cast<double>(parts_ + 1) * part) ++parts_;
+  }
+  double peak() const { return peak_; }
+  double at() const { return at_; }
+  template <class Archive>
+  void archive(Archive& a) {
+    a(sum_, count_, parts_, peak_, at_);
+  }
+
+ private:
+  double sum_ = 0, count_ = 0;  // of the part that it is in
+  std::int64_t parts_ = 0;      // behind
+  double peak_ = 0, at_ = 0;    // [N], its middle [m]
+};
 
 class Move : public Stage {
  public:
@@ -94,6 +126,10 @@ class Move : public Stage {
                                 {"force", resistance(sim), Dimension::force},
                                 {"force_peak", peak_, Dimension::force},
                                 {"distance_at_peak", peak_at_, Dimension::length}};
+    if (in_.mean_over) {
+      results.push_back({"mean_force_peak", means_.peak(), Dimension::force});
+      results.push_back({"distance_at_mean_peak", means_.at(), Dimension::length});
+    }
     for (std::size_t k = 0; k < probed_.size(); ++k)
       results.push_back({fmt::format("force_at_{:g}_mm", 1e3 * in_.probes[k]), probed_[k], Dimension::force});
     for (const Result& r : levels_.results()) results.push_back(r);
@@ -108,7 +144,7 @@ class Move : public Stage {
       left = std::max(left, (*in_.displacement - displacement(sim)) / in_.velocity.norm());
     return left;
   }
-  void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, probed_, levels_); }
+  void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, means_, probed_, levels_); }
 
  private:
   double distance(const Simulation& sim) const {
@@ -126,6 +162,7 @@ class Move : public Stage {
       peak_ = force;
       peak_at_ = gone;
     }
+    if (in_.mean_over) means_.look(force, gone, *in_.mean_over);
     while (probed_.size() < in_.probes.size() && gone >= in_.probes[probed_.size()]) probed_.push_back(force);
   }
 
@@ -135,7 +172,8 @@ class Move : public Stage {
   double start_ = 0;
   Vec3 from_ = Vec3::Zero();
   double peak_ = 0, peak_at_ = 0;  // [N], [m]
-  std::vector<double> probed_;     // [N]
+  PeakOfMeans means_;
+  std::vector<double> probed_;  // [N]
   Levels levels_;
 };
 
