@@ -1,6 +1,7 @@
-// Stages that follow each other again and again.
+// A wall that moves, once, and again and again.
 #include <gtest/gtest.h>
 
+#include "expected.h"
 #include "lab/case.h"
 #include "lab/run.h"
 #include "scenes/scene.h"
@@ -56,6 +57,27 @@ double cell(const ResultTable& table, std::size_t row, const std::string& column
     if (table.columns[k].name == column) return table.rows.at(row).at(k);
   ADD_FAILURE() << "there is no column " << column;
   return 0;
+}
+
+// A ball between two planes is a spring of 0.5e6 N/m: mean force over the way from a to b k (a + b)/2.
+TEST(Move, MeansOfTheForceOverPartsOfTheWay) {
+  Simulation sim = ball_under_lid();
+  const auto results = carry_out(sim, *stage_of(R"toml(
+title = "Press"
+[materials.ballast]
+kn = "1e7 N/m"
+ks = "1e7 N/m"
+[[stages]]
+kind = "move"
+wall = "lid"
+velocity = ["0 m/s", "0 m/s", "-10 mm/s"]
+distance = "0.45 mm"
+mean_over = "0.1 mm"
+)toml"));
+  const double peak = value_of(results, "force_peak");
+  EXPECT_NEAR(peak, 225, 2);
+  EXPECT_NEAR(value_of(results, "mean_force_peak"), 0.5e6 * 0.35e-3, 2);  // the last half part is not whole
+  EXPECT_NEAR(value_of(results, "distance_at_mean_peak"), 0.35e-3, 1e-12);
 }
 
 // Two contacts of 1e6 N/m in series: 100 N press them together by 0.2 mm.
