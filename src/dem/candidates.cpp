@@ -93,7 +93,7 @@ struct DuePair {
 };
 
 /// The candidates of two stones: from the list of what was near when the trees were last walked, or by a walk
-/// if that list is too old. `reach`: bounding radius of stone j [m].
+/// if that list is too old. `reach`: in which turning moves pebbles of stone j [m].
 void find_candidates(const TwoStones& two, const Skin& skin, const Relative& now, double reach,
                      const DuePair& due, Scratch& s) {
   if (skin.inner == skin.outer) return walk_trees(two, skin.outer, s);
@@ -115,8 +115,10 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
   PairSearch& search = due.geometry.search[due.pair];
   const Index i = static_cast<Index>(pair.i), j = static_cast<Index>(pair.j);
   const double travel = work.travel[i] + work.travel[j];
-  const Relative now = relative_pose(c.position[i], c.orientation[i], c.position[j], c.orientation[j]);
-  const double left = search.range - motion_since(search, now, work.bound[j]);
+  // Turning moves nothing of a ball: its frame may as well stand still.
+  const auto turn = [&](Index k) { return work.swing[k] > 0 ? c.orientation[k] : Quat::Identity(); };
+  const Relative now = relative_pose(c.position[i], turn(i), c.position[j], turn(j));
+  const double left = search.range - motion_since(search, now, work.swing[j]);
   if (left > nearly_used_up * search.range) {
     due.geometry.due[due.pair] = travel + left;
     return false;
@@ -127,7 +129,7 @@ bool search_pair(const Model& model, const State& state, const Workspace& work, 
   if (two.are_simple()) skin.inner = skin.outer;  // nothing to choose from
   scratch().found.clear();
   if (apart <= skin.inner)
-    find_candidates(two, skin, now, work.bound[j], due, scratch());
+    find_candidates(two, skin, now, work.swing[j], due, scratch());
   else if (due.pair < due.geometry.near.size())
     due.geometry.near[due.pair] = {};
   const bool has_list = apart <= skin.inner || pair.count > 0;

@@ -99,7 +99,7 @@ void turn_evenly(Turning<Real>& t, const Vec3Of<Real>& moment, const Vec3Of<Real
 struct Movers {
   Vec3Of<Lanes> inertia, position, velocity, force, moment;
   Turning<Lanes> turning;
-  Lanes mass, inertial_mass, bound, travel;
+  Lanes mass, inertial_mass, swing, travel;
 };
 
 /// One step of several stones; returns the lengths of way of their farthest points [m].
@@ -123,7 +123,7 @@ Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
     for (std::size_t k = 0; k < 4; ++k) m.turning.turn[k] = select(even, evenly.turn[k], m.turning.turn[k]);
   }
 
-  const Lanes way = Lanes(dt) * sqrt(m.velocity.squaredNorm()) + m.bound * chord(before, m.turning.turn);
+  const Lanes way = Lanes(dt) * sqrt(m.velocity.squaredNorm()) + m.swing * chord(before, m.turning.turn);
   m.travel += way;
   return way;
 }
@@ -168,7 +168,7 @@ struct Batch {
   m.moment = q.load(c.moment);
   m.mass = q.load(c.mass);
   m.inertial_mass = q.load(c.inertial_mass);
-  m.bound = q.load(work.bound);
+  m.swing = q.load(work.swing);
   m.travel = q.load(work.travel);
   Rows orientations;  // x, y, z, w as Eigen stores them
   for (Index k = 0; k < orientations.size(); ++k)

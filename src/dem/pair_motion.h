@@ -29,10 +29,10 @@ inline Skin skin_of(const State& state, const Workspace& work, double speed) {
   return {lasting(50, 0.02), lasting(1000, 0.2)};
 }
 
-/// Speed of a stone's farthest point [m/s].
+/// Largest speed of a stone's pebbles [m/s].
 inline double speed_of(const State& state, const Workspace& work, std::size_t clump) {
   return state.clumps.velocity[clump].norm() +
-         work.bound[clump] * state.clumps.angular_velocity[clump].norm();
+         work.swing[clump] * state.clumps.angular_velocity[clump].norm();
 }
 
 /// Pose of one body in the frame of another.

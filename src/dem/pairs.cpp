@@ -295,12 +295,14 @@ void prepare(const Model& model, const State& state, Workspace& work) {
   list_pebbles(model, work);
   work.motion.resize(n);
   work.bound.resize(n);
+  work.swing.resize(n);
   work.travel.resize(n, 0.0);
   work.group_way.assign((n + Watch::group - 1) / Watch::group, 0.0);
   for (Index c = 0; c < n; ++c) {
     const Index shape = static_cast<Index>(state.clumps.shape[c]);
     work.motion[c] = motion_of(state.clumps, c);
     work.bound[c] = model.templates[shape].bounding_radius * state.clumps.scale[c];
+    work.swing[c] = work.is_centred[shape] ? 0.0 : work.bound[c];
   }
   work.wall_rotation.resize(state.walls.size());
   work.wall_travel.resize(state.walls.size(), 0.0);

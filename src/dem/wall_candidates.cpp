@@ -50,7 +50,7 @@ bool must_search(const Model& model, const State& state, const Workspace& work, 
     const WallPair& p = block.pairs[k];
     if (travel_of(work, p) <= geometry.due[k]) continue;
     const double moved =
-        motion_since(search, stone_seen_from_wall(state, p), work.bound[static_cast<Index>(p.clump)]);
+        motion_since(search, stone_seen_from_wall(state, p), work.swing[static_cast<Index>(p.clump)]);
     if (search.range - moved > nearly_used_up * search.range)
       choose_tested(work, p, k, moved, skin_of(model, state, work, p).inner, geometry);
     else
@@ -133,9 +133,9 @@ void append_candidates(const Model& model, const State& state, double skin, cons
       return false;
     });
     if (!wall.is_plane && lists.facets.size() == first) return false;
-    const bool is_known = old < old_end && block.keys[old] == pebble;
-    append(pebble, is_known ? block.memory[old++] : WallMemory{}, static_cast<int>(first),
-           (wall.is_plane ? centre.z() : std::sqrt(nearest2)) - scale * shape.radius);
+    const WallMemory memory = old < old_end && block.keys[old] == pebble ? block.memory[old++] : WallMemory{};
+    const double gap = (wall.is_plane ? centre.z() : std::sqrt(nearest2)) - scale * shape.radius;
+    append(pebble, memory, static_cast<int>(first), touches(memory) ? std::min(gap, 0.0) : gap);
     return false;
   });
   keep_touching_before(static_cast<std::int32_t>(stone.pebbles.size()));

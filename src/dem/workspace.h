@@ -137,6 +137,7 @@ struct Workspace {
   std::vector<int> first_pebble;        // of each template
   std::vector<char> is_centred;         // of each template: all its pebbles stand in its centre of mass
   std::vector<double> bound;            // bounding radius [m]
+  std::vector<double> swing;            // bound, or 0 where turning moves no pebble [m]
   std::vector<double> travel;           // length of way of its farthest point since the start [m]
   std::vector<Vec3> position_at_build;  // when the pairs were made [m]
   // Of each wall.

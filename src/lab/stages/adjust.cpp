@@ -19,6 +19,7 @@ struct AdjustInput : StageInput {
   double unbalanced_ratio = 1e-3;
   double largest_factor = 0.01;
   int steps = 400, rounds = 200;
+  double scaled_share = usual_scaled_share;
   std::optional<double> friction;  // during this stage
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
     check_room(document, here, sim);
@@ -40,6 +41,10 @@ void declare(Fields& f, AdjustInput& in) {
            "the run fails when sizes would have to change by more than this share in all");
   f.integer("steps", in.steps, {.at_least = 50}, "between two changes of the sizes");
   f.integer("rounds", in.rounds, {.at_least = 1}, "most changes of the sizes");
+  f.number(
+      "scaled_share", in.scaled_share, {.above = 0, .at_most = 1},
+      "share of the stones that get more inertia meanwhile, those with the shortest steps of their own; 1 "
+      "for wide gradings: large stones move as quickly as small ones");
   f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
            "upper bound on the friction of all contacts during this stage");
 }
@@ -54,7 +59,7 @@ class Adjust : public Stage {
     if (in_.friction) sim.model.pairs = sim.model.pairs.with_friction_up_to(*in_.friction);
     target_ = in_.stress ? *in_.stress : stress_of_weight(sim);
     start_ = next_ = sim.state.step;
-    sim.scale_step();
+    sim.scale_step(in_.scaled_share);
     sim.changed();
   }
 

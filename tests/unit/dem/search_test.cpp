@@ -134,5 +134,46 @@ TEST(Search, NoContactIsMissedWhileStonesFlyAndTurn) {
   EXPECT_GT(met, 1000);
 }
 
+// A ball that leaves a wall at once, farther than any skin: its contact ends, and is not there when it
+// returns.
+TEST(Search, ContactsWithWallsEndHoweverFarTheStoneHasGone) {
+  Simulation sim = scenes::make_scene({});
+  const double radius = sim.model.templates[0].bounding_radius;
+  const int ball = scenes::add_ball(sim, {0, 0, 0.999 * radius});
+  scenes::add_plane(sim, Vec3::Zero(), Vec3::UnitZ());
+  sim.step();
+  ASSERT_EQ(candidates(sim, true).size(), 1u);
+  rescale(sim.model, sim.state, ball, 0.99);
+  sim.changed();
+  EXPECT_TRUE(candidates(sim, true).empty());
+}
+
+// Balls, whose turning moves nothing, of many sizes, pressed into each other: they leap from rest.
+TEST(Search, NoContactIsMissedWhileBallsLeapApart) {
+  int met = 0;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    Rng rng(seed, "balls");
+    scenes::Setting setting;
+    setting.radius = 0.01;
+    setting.kn = setting.ks = 1e3;
+    setting.friction = 0.5;
+    Simulation sim = scenes::make_scene(setting);
+    sim.model.limits.overlap = 1e9;
+    const auto within = [&](double most) { return rng.uniform(-most, most); };
+    for (int k = 0; k < 300; ++k)
+      scenes::add_ball(sim, {within(0.05), within(0.05), within(0.05)}, Vec3::Zero(),
+                       {within(200), within(200), within(200)}, k % 10 == 0 ? 1.5 : rng.uniform(0.1, 0.4));
+    scenes::add_plane(sim, {0, 0, -0.05}, Vec3::UnitZ());
+    for (int k = 0; k < 100; ++k) {
+      sim.step();
+      if (k % 3) continue;
+      const std::set<Key> touching = near_ones(sim, 0.0);
+      met += static_cast<int>(touching.size());
+      ASSERT_EQ(candidates(sim, true), touching) << seed << " " << k;
+    }
+  }
+  EXPECT_GT(met, 10000);
+}
+
 }  // namespace
 }  // namespace trackbed
