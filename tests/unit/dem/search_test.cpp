@@ -109,6 +109,13 @@ TEST(Search, FindsTheFirstStonesOfAnEmptyScene) {
   EXPECT_EQ(sim.work.touching, 1);
 }
 
+/// Every pebble in touch has a contact, and no other; adds their number to `met`.
+void expect_all_contacts(const Simulation& sim, int& met) {
+  const std::set<Key> touching = near_ones(sim, 0.0);
+  met += static_cast<int>(touching.size());
+  ASSERT_EQ(candidates(sim, true), touching);
+}
+
 // Whatever was refreshed and whatever was not: every pebble in touch has a contact, after each of many steps.
 TEST(Search, NoContactIsMissedWhileStonesFlyAndTurn) {
   int met = 0;
@@ -126,9 +133,7 @@ TEST(Search, NoContactIsMissedWhileStonesFlyAndTurn) {
     for (int k = 0; k < 1000; ++k) {
       sim.step();
       if (k % 5) continue;
-      const std::set<Key> touching = near_ones(sim, 0.0);
-      met += static_cast<int>(touching.size());
-      ASSERT_EQ(candidates(sim, true), touching) << seed << " " << k;
+      ASSERT_NO_FATAL_FAILURE(expect_all_contacts(sim, met)) << seed << " " << k;
     }
   }
   EXPECT_GT(met, 1000);
@@ -167,9 +172,7 @@ TEST(Search, NoContactIsMissedWhileBallsLeapApart) {
     for (int k = 0; k < 100; ++k) {
       sim.step();
       if (k % 3) continue;
-      const std::set<Key> touching = near_ones(sim, 0.0);
-      met += static_cast<int>(touching.size());
-      ASSERT_EQ(candidates(sim, true), touching) << seed << " " << k;
+      ASSERT_NO_FATAL_FAILURE(expect_all_contacts(sim, met)) << seed << " " << k;
     }
   }
   EXPECT_GT(met, 10000);
