@@ -8,6 +8,7 @@
 #include "lab/case.h"
 #include "lab/measures/measures.h"
 #include "lab/room.h"
+#include "lab/stages/conditions.h"
 #include "lab/stages/table.h"
 
 namespace trackbed {
@@ -41,10 +42,7 @@ void declare(Fields& f, AdjustInput& in) {
            "the run fails when sizes would have to change by more than this share in all");
   f.integer("steps", in.steps, {.at_least = 50}, "between two changes of the sizes");
   f.integer("rounds", in.rounds, {.at_least = 1}, "most changes of the sizes");
-  f.number(
-      "scaled_share", in.scaled_share, {.above = 0, .at_most = 1},
-      "share of the stones that get more inertia meanwhile, those with the shortest steps of their own; 1 "
-      "for wide gradings: large stones move as quickly as small ones");
+  declare_scaled_share(f, in.scaled_share);
   f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
            "upper bound on the friction of all contacts during this stage");
 }

@@ -18,6 +18,13 @@ void declare(Fields& f, ConditionsInput& in) {
           "no stone has its inertia raised here", "set scaled_step = true, or leave it out");
 }
 
+void declare_scaled_share(Fields& f, double& share) {
+  f.number(
+      "scaled_share", share, {.above = 0, .at_most = 1},
+      "share of the stones that get more inertia meanwhile, those with the shortest steps of their own; 1 "
+      "for wide gradings: large stones move as quickly as small ones");
+}
+
 void apply(const ConditionsInput& in, Simulation& sim) {
   if (in.damping) sim.model.local_damping = *in.damping;
   if (in.friction) sim.model.pairs = sim.model.pairs.with_friction_up_to(*in.friction);

@@ -17,6 +17,9 @@ struct ConditionsInput {
 /// The keys of all of them.
 void declare(Fields& f, ConditionsInput& in);
 
+/// The key scaled_share of a stage whose step is always scaled.
+void declare_scaled_share(Fields& f, double& share);
+
 /// To be called when the stage is opened; the run brings back what was there before.
 void apply(const ConditionsInput& in, Simulation& sim);
 

@@ -5,6 +5,7 @@
 #include "lab/case.h"
 #include "lab/grading.h"
 #include "lab/room.h"
+#include "lab/stages/conditions.h"
 #include "lab/stages/parting.h"
 #include "lab/stages/selection.h"
 #include "lab/stages/table.h"
@@ -53,10 +54,7 @@ void declare(Fields& f, ScatterInput& in) {
            "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
-  f.number("scaled_share", in.scaled_share, {.above = 0, .at_most = 1},
-           "share of the stones that get more inertia while they part, those with the shortest steps of "
-           "their own; 1 for wide "
-           "gradings: large stones move as quickly as small ones");
+  declare_scaled_share(f, in.scaled_share);
 }
 
 /// Places stones anywhere in the container, overlapping each other but no wall, and lets them part: without
