@@ -102,7 +102,7 @@ struct Movers {
   Lanes mass, inertial_mass, swing, travel;
 };
 
-/// One step of several stones; returns the lengths of way of their farthest points [m].
+/// One step of several stones; returns how far a pebble of each can have gone [m].
 Lanes move(const Model& model, Movers& m, double kick_time, double dt) {
   const double alpha = model.local_damping;
   const Vec3Of<Lanes> gravity(model.gravity.x(), model.gravity.y(), model.gravity.z());

@@ -63,11 +63,11 @@ Grid make_grid(const Clumps& clumps, const std::vector<int>& stones, const Works
   return grid;
 }
 
-/// Stones of very different sizes lie in grids of their own: within one, the largest is at most four times as
+/// Stones of very different sizes lie in grids of their own: within one, the largest is at most twice as
 /// large as the smallest, but in the last, which has all that are smaller still.
 std::vector<Grid> make_grids(const Clumps& clumps, const Workspace& work) {
   constexpr int most = 6;
-  constexpr double ratio = 4;
+  constexpr double ratio = 2;
   const double largest = *std::max_element(work.bound.begin(), work.bound.end());
   std::array<std::vector<int>, most> levels;
   for (int c = 0; c < clumps.size(); ++c) {
@@ -88,39 +88,55 @@ bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
   return any_near_facet(shape, centre, radius, [](int, double) { return true; });
 }
 
+/// Appends the numbers of the stones after i that are near it, grid by grid.
+void append_near(int i, const std::vector<Grid>& grids, const Clumps& clumps, const Workspace& work,
+                 std::vector<int>& others) {
+  const Vec3& x = clumps.position[static_cast<Index>(i)];
+  const double bound = work.bound[static_cast<Index>(i)];
+  for (const Grid& grid : grids) {
+    const Vec3 reach = Vec3::Constant(bound + grid.largest + work.margin);
+    const auto low = grid.place(x - reach), high = grid.place(x + reach);
+    for (int z = low[2]; z <= high[2]; ++z)
+      for (int y = low[1]; y <= high[1]; ++y) {
+        const int last = grid.first[static_cast<Index>(grid.number(high[0], y, z)) + 1];
+        for (int k = grid.first[static_cast<Index>(grid.number(low[0], y, z))]; k < last; ++k) {
+          const int j = grid.members[static_cast<Index>(k)];
+          if (j <= i) continue;
+          const double near = bound + work.bound[static_cast<Index>(j)] + work.margin;
+          if ((clumps.position[static_cast<Index>(j)] - x).squaredNorm() < near * near) others.push_back(j);
+        }
+      }
+  }
+}
+
 }  // namespace
 
-std::vector<std::pair<int, int>> near_clumps(const Clumps& clumps, const Workspace& work) {
-  std::vector<std::pair<int, int>> pairs;
-  if (clumps.size() < 2) return pairs;
+Pairs near_clumps(const Clumps& clumps, const Workspace& work) {
+  if (clumps.size() < 2) return {};
   const std::vector<Grid> grids = make_grids(clumps, work);
-  std::vector<int> others;
-  for (int i = 0; i < clumps.size(); ++i) {
-    const Vec3& x = clumps.position[static_cast<Index>(i)];
-    const double bound = work.bound[static_cast<Index>(i)];
-    others.clear();
-    for (const Grid& grid : grids) {
-      const Vec3 reach = Vec3::Constant(bound + grid.largest + work.margin);
-      const auto low = grid.place(x - reach), high = grid.place(x + reach);
-      for (int z = low[2]; z <= high[2]; ++z)
-        for (int y = low[1]; y <= high[1]; ++y) {
-          const int last = grid.first[static_cast<Index>(grid.number(high[0], y, z)) + 1];
-          for (int k = grid.first[static_cast<Index>(grid.number(low[0], y, z))]; k < last; ++k) {
-            const int j = grid.members[static_cast<Index>(k)];
-            if (j <= i) continue;
-            const double near = bound + work.bound[static_cast<Index>(j)] + work.margin;
-            if ((clumps.position[static_cast<Index>(j)] - x).squaredNorm() < near * near) others.push_back(j);
-          }
-        }
+  constexpr int run = 1024;  // consecutive stones that one thread takes at a time
+  std::vector<Pairs> of_run(static_cast<Index>((clumps.size() + run - 1) / run));
+#pragma omp parallel for schedule(dynamic) if (of_run.size() > 1)
+  for (Index r = 0; r < of_run.size(); ++r) {
+    std::vector<int> others;
+    const int first = static_cast<int>(r) * run, end = std::min(first + run, clumps.size());
+    for (int i = first; i < end; ++i) {
+      others.clear();
+      append_near(i, grids, clumps, work, others);
+      std::sort(others.begin(), others.end());
+      for (int j : others) of_run[r].emplace_back(i, j);
     }
-    std::sort(others.begin(), others.end());
-    for (int j : others) pairs.emplace_back(i, j);
   }
+  Pairs pairs;
+  Index n = 0;
+  for (const Pairs& some : of_run) n += some.size();
+  pairs.reserve(n);
+  for (const Pairs& some : of_run) pairs.insert(pairs.end(), some.begin(), some.end());
   return pairs;
 }
 
-std::vector<std::pair<int, int>> near_walls(const Model& model, const State& state, const Workspace& work) {
-  std::vector<std::pair<int, int>> pairs;
+Pairs near_walls(const Model& model, const State& state, const Workspace& work) {
+  Pairs pairs;
   for (Index w = 0; w < model.walls.size(); ++w)
     for (int c = 0; state.walls[w].present && c < state.clumps.size(); ++c) {
       const Vec3 centre = state.walls[w].pose.to_body(state.clumps.position[static_cast<Index>(c)]);

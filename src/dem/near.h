@@ -10,10 +10,12 @@
 
 namespace trackbed {
 
+using Pairs = std::vector<std::pair<int, int>>;
+
 /// All (i, j), i < j, with less than the margin between their bounding spheres, ascending.
-std::vector<std::pair<int, int>> near_clumps(const Clumps& clumps, const Workspace& work);
+Pairs near_clumps(const Clumps& clumps, const Workspace& work);
 
 /// All (wall, clump) with less than the margin between the wall and the bounding sphere, ascending.
-std::vector<std::pair<int, int>> near_walls(const Model& model, const State& state, const Workspace& work);
+Pairs near_walls(const Model& model, const State& state, const Workspace& work);
 
 }  // namespace trackbed

@@ -19,7 +19,7 @@ struct Skin {
 };
 
 /// Small distances keep idle candidates out of the lists of bodies that hardly move, larger ones spare fast
-/// bodies a search at every step. `speed`: sum of those of the bodies' farthest points [m/s].
+/// bodies a search at every step. `speed`: sum of those of the bodies' fastest pebbles [m/s].
 inline Skin skin_of(const State& state, const Workspace& work, double speed) {
   // Before there are stones the planned step is endless, and the way not a number when they come at rest.
   const auto lasting = [&](int steps, double smallest_share) {

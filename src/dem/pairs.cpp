@@ -58,8 +58,6 @@ void carry(const PairBlock& from, Index pair, PairBlock& to) {
   to.memory.insert(to.memory.end(), from.memory.begin() + first, from.memory.begin() + last);
 }
 
-using Pairs = std::vector<std::pair<int, int>>;
-
 /// Lists of the pairs that have a number for their second: first[c] to first[c + 1] in `entries`.
 void list_by_second(const Pairs& pairs, Index n, std::vector<int>& first, std::vector<int>& entries) {
   first.assign(n + 1, 0);
@@ -276,13 +274,22 @@ StoneMotion motion_of(const Clumps& clumps, Index c) {
           row_of(clumps.angular_velocity[c]), Row::load(clumps.orientation[c].coeffs().data())};
 }
 
+/// A margin that lasts some 50 steps, by how long the last one did: wider where stones move far in a step,
+/// for making all pairs anew costs more than pairs that are not needed. `mean`: of the bounding radii [m].
+double lasting_margin(const Workspace& work, double mean) {
+  constexpr double wanted = 50, smallest = 0.15, largest = 0.6;
+  if (!work.pairs_are_valid) return smallest * mean;  // thrown away, not used up
+  const double lasted = std::max(work.steps_of_pairs, 1);
+  return std::clamp(work.margin * wanted / lasted, smallest * mean, largest * mean);
+}
+
 /// Skin and margin that suit the stones, where the user gave none; docs/numerics.md.
 void choose_search(const Model& model, const State& state, Workspace& work) {
   double sum = 0;
   for (double b : work.bound) sum += b;
   const double mean = work.bound.empty() ? 0.02 : sum / static_cast<double>(state.clumps.size());
   work.skin = model.search.skin > 0 ? model.search.skin : 0.015 * mean;
-  work.margin = model.search.margin > 0 ? model.search.margin : 0.15 * mean;
+  work.margin = model.search.margin > 0 ? model.search.margin : lasting_margin(work, mean);
   work.margin = std::max(work.margin, work.skin);
 }
 
@@ -313,6 +320,7 @@ void prepare(const Model& model, const State& state, Workspace& work) {
 
 bool pairs_are_due(const State& state, Workspace& work) {
   if (!work.pairs_are_valid) return true;
+  ++work.steps_of_pairs;
   if (work.way + work.wall_way < work.pairs_good_until) return false;
   double shift2 = 0, wall_shift = 0;
   for (Index c = 0; c < work.position_at_build.size(); ++c)
@@ -334,6 +342,7 @@ void rebuild_pairs(const Model& model, State& state, Workspace& work) {
   work.position_at_build = state.clumps.position;
   work.wall_travel_at_build = work.wall_travel;
   work.pairs_good_until = work.way + work.wall_way + 0.5 * work.margin;
+  work.steps_of_pairs = 0;
   work.pairs_are_valid = true;
 }
 

@@ -138,7 +138,7 @@ struct Workspace {
   std::vector<char> is_centred;         // of each template: all its pebbles stand in its centre of mass
   std::vector<double> bound;            // bounding radius [m]
   std::vector<double> swing;            // bound, or 0 where turning moves no pebble [m]
-  std::vector<double> travel;           // length of way of its farthest point since the start [m]
+  std::vector<double> travel;           // no pebble of it has gone farther since the start [m]
   std::vector<Vec3> position_at_build;  // when the pairs were made [m]
   // Of each wall.
   std::vector<Mat3> wall_rotation;
@@ -147,6 +147,7 @@ struct Workspace {
 
   double skin = 0, margin = 0;    // [m]
   bool pairs_are_valid = false;   // false: make all pairs anew before the next forces
+  int steps_of_pairs = 0;         // since they were made
   double pairs_good_until = 0;    // no stone outside the pairs can touch before way + wall_way is there [m]
   double way = 0;                 // no stone's travel has grown by more since the start [m]
   double wall_way = 0;            // nor has any wall's [m]

@@ -153,6 +153,19 @@ TEST(Search, ContactsWithWallsEndHoweverFarTheStoneHasGone) {
   EXPECT_TRUE(candidates(sim, true).empty());
 }
 
+TEST(Search, MarginSuitsHowFarStonesGoInAStep) {
+  Simulation sim = scenes::make_scene({});
+  const double radius = scenes::Setting{}.radius;
+  for (const double x : {0.0, 1.0}) scenes::add_ball(sim, {x, 0, 0}, {0, 5, 0});
+  sim.step();
+  EXPECT_NEAR(sim.work.margin, 0.15 * radius, 1e-15);
+  for (int k = 0; k < 300; ++k) sim.step();
+  EXPECT_NEAR(sim.work.margin, 0.6 * radius, 1e-15);
+  for (int c = 0; c < 2; ++c) set_motion(sim.state, c, {0, 0.1, 0}, Vec3::Zero());
+  for (int k = 0; k < 3000; ++k) sim.step();
+  EXPECT_NEAR(sim.work.margin, 0.15 * radius, 1e-15);
+}
+
 // Balls, whose turning moves nothing, of many sizes, pressed into each other: they leap from rest.
 TEST(Search, NoContactIsMissedWhileBallsLeapApart) {
   int met = 0;
