@@ -31,6 +31,16 @@ double weight(const Simulation& sim) {
   return mass * sim.model.gravity.norm();
 }
 
+double weight_borne(const Simulation& sim) {
+  const Clumps& c = sim.state.clumps;
+  double borne = 0, weight = 0;
+  for (Index i = 0; i < c.id.size(); ++i) {
+    borne -= c.force[i].dot(sim.model.gravity);
+    weight += c.mass[i] * sim.model.gravity.squaredNorm();
+  }
+  return weight > 0 ? borne / weight : 0.0;
+}
+
 double median_size(const Simulation& sim) {
   const Clumps& c = sim.state.clumps;
   std::vector<std::pair<double, double>> stones;  // diameter, mass

@@ -28,6 +28,8 @@ double largest_overlap(const Simulation& sim);        ///< over the smaller ston
 double pebble_volume(const Simulation& sim);  ///< of the unions of each stone's pebbles [m^3]
 double solid_volume(const Simulation& sim);   ///< of the stones, overlaps counted twice [m^3]
 double weight(const Simulation& sim);         ///< of stones and bodies [N]
+/// Share of the stones' weight that contacts bear in sum; 0 without stones or gravity.
+double weight_borne(const Simulation& sim);
 double median_size(
     const Simulation& sim);  ///< half of the mass is of stones with a smaller equal-volume diameter
 

@@ -22,6 +22,11 @@ std::vector<Measure> stone_measures() {
       {"pebbles", none, "of all stones", pebbles},
       {"solid_volume", volume, "of all stones, overlaps counted twice", solid_volume},
       {"weight", force, "of stones and bodies", weight},
+      {"weight_borne", none,
+       "share of the stones' weight that walls and bodies bear: below 1 while some fall, or hover with a "
+       "scaled "
+       "step",
+       weight_borne},
       {"stone_displacement_max", length, "of the stone that has moved most since the stage began",
        largest_displacement},
       {"d50", length, "equal-volume diameter that half of the mass is below", median_size},

@@ -63,6 +63,7 @@ TEST(Measures, ForcesOfATower) {
   EXPECT_NEAR(value_of(sim, "contact_force_max"), 100.0, 1e-9);
   EXPECT_NEAR(value_of(sim, "contact_force_mean"), 75.0, 1e-9);
   EXPECT_NEAR(value_of(sim, "plane.force_z"), -100.0, 1e-9);
+  EXPECT_NEAR(value_of(sim, "weight_borne"), 100.0 / value_of(sim, "weight"), 1e-9);
   EXPECT_NEAR(value_of(sim, "largest_overlap"), 0.1 / 20.0, 1e-12);
   EXPECT_EQ(force_histogram(sim, {60, 100.5}), (std::vector<int>{1, 1, 0}));
   EXPECT_EQ(force_histogram(sim, {10}), (std::vector<int>{0, 2}));
@@ -117,6 +118,10 @@ TEST(Measures, ABallAtRestIsCarriedByThePlane) {
   EXPECT_LT(value_of(sim, "unbalanced_ratio"), 1e-5);
   EXPECT_LT(value_of(sim, "energy_kinetic"), 1e-12);
   EXPECT_GT(value_of(sim, "loss_damping"), 0);
+  EXPECT_NEAR(value_of(sim, "weight_borne"), 1, 1e-6);
+  scenes::add_ball(sim, {0, 0, 1});  // in the air
+  sim.changed();
+  EXPECT_NEAR(value_of(sim, "weight_borne"), 0.5, 1e-6);
 }
 
 TEST(Measures, BedOfBallsOnASquareGrid) {
