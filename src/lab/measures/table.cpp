@@ -1,8 +1,6 @@
 // The table of measures: one row each.
 #include <fmt/format.h>
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <iterator>
 
@@ -24,8 +22,7 @@ std::vector<Measure> stone_measures() {
       {"weight", force, "of stones and bodies", weight},
       {"weight_borne", none,
        "share of the stones' weight that walls and bodies bear: below 1 while some fall, or hover with a "
-       "scaled "
-       "step",
+       "scaled step",
        weight_borne},
       {"stone_displacement_max", length, "of the stone that has moved most since the stage began",
        largest_displacement},
