@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <vector>
 
 #include "fem/blas.h"
 #include "fem/ritz.h"
@@ -21,13 +22,13 @@ class Projection {
   Projection(const Soil& soil, const ColumnSets& columns)
       : soil_(soil),
         columns_(columns),
-        each_(columns.sets.front().values.cols()),
         planes_(static_cast<int>(columns.sets.front().values.rows()) / (3 * soil.section_size())),
         footings_(soil.footings()) {
     has_dashpots_ = false;
     for (Support s : {soil.input.start, soil.input.end, soil.input.side, soil.input.base})
       has_dashpots_ = has_dashpots_ || s == Support::absorbing;
-    const Eigen::Index n = each_ * footings_;
+    for (int f = 0; f < footings_; ++f) at_.push_back(at_.back() + set(f).values.cols());
+    const Eigen::Index n = at_.back();
     mass.setZero(n, n);
     stiffness.setZero(n, n);
     dashpots.setZero(has_dashpots_ ? n : 0, has_dashpots_ ? n : 0);
@@ -45,6 +46,9 @@ class Projection {
     Eigen::MatrixXd mass, stiffness, dashpots;
   };
   int begin(int f) const { return columns_.first_plane[static_cast<std::size_t>(f)]; }
+  /// The columns of footing f among all.
+  Eigen::Index at(int f) const { return at_[static_cast<std::size_t>(f)]; }
+  Eigen::Index count(int f) const { return set(f).values.cols(); }
   int set_index(int f) const { return columns_.set_of[static_cast<std::size_t>(f)]; }
   const SoilColumns& set(int f) const { return columns_.sets[static_cast<std::size_t>(set_index(f))]; }
 
@@ -92,10 +96,10 @@ class Projection {
 
   void put(Eigen::MatrixXd& to, const Eigen::MatrixXd& block, int i, int j) const {
     if (i == j) {
-      to.block(i * each_, i * each_, each_, each_) = (block + block.transpose()) / 2;
+      to.block(at(i), at(i), count(i), count(i)) = (block + block.transpose()) / 2;
     } else {
-      to.block(i * each_, j * each_, each_, each_) = block;
-      to.block(j * each_, i * each_, each_, each_) = block.transpose();
+      to.block(at(i), at(j), count(i), count(j)) = block;
+      to.block(at(j), at(i), count(j), count(i)) = block.transpose();
     }
   }
 
@@ -109,19 +113,19 @@ class Projection {
         for (int a = 0; a < soil_.nodes_along; ++a) {
           if (plane + a < 0 || plane + a >= planes_) continue;
           const int node = (plane + a) * size + soil_.footing_section_nodes[static_cast<std::size_t>(row)];
-          nodes.block(g * soil_.nodes_per_footing() + row * soil_.nodes_along + a, f * each_, 1, each_) =
+          nodes.row(g * soil_.nodes_per_footing() + row * soil_.nodes_along + a).segment(at(f), count(f)) =
               values.row(3 * node + 2);
         }
     }
     const Eigen::VectorXd masses = masses_of(soil_, begin(f), planes_);
     for (int node = 0; node < planes_ * size; ++node)
-      gravity.segment(f * each_, each_) -=
+      gravity.segment(at(f), count(f)) -=
           gravity_acceleration * masses[3 * node + 2] * values.row(3 * node + 2).transpose();
   }
 
   const Soil& soil_;
   const ColumnSets& columns_;
-  Eigen::Index each_;
+  std::vector<Eigen::Index> at_ = {0};
   int planes_, footings_;
   bool has_dashpots_;
 };

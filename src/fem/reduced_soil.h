@@ -11,6 +11,9 @@ struct ReductionInput {
   /// Vectors K^-1 M ... of each pressure shape beside the static one. Errors of peaks with 3: some 0.3 %
   /// under blows of 20 ms, 0.5 % of 10 ms, 5 % of 5 ms; docs/theory.md, section 11.4.
   int krylov = 3;
+  /// The same for footings within half a window of a free end. Beside a bridge sleepers hang and strike the
+  /// soil with blows of some 2 ms.
+  int krylov_at_free_end = 8;
   /// Length of the soil in which a footing's columns are worked out [m]; beyond it they are zero. 18 m
   /// changes nothing; 6 m changes 0.02 % under axles and 1 % under blows of 10 ms.
   double window = 12;
@@ -18,7 +21,7 @@ struct ReductionInput {
 
 /// Displacements u = V q of all nodes, V orthonormal in mass and stiffness:
 ///     q'' + damping q' + diag(stiffness) q = nodes^T f + gravity,     footings: u = nodes q
-/// n unknowns: about footings x shapes x (1 + krylov).
+/// n unknowns: the sum of shapes x (1 + krylov) over footings, less those that others span.
 struct ReducedSoil {
   Eigen::VectorXd stiffness;  // n, ascending: squares of the natural frequencies [1/s2]
   Eigen::MatrixXd damping;    // n x n [1/s]: diagonal but for the dashpots of absorbing faces

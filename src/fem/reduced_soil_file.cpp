@@ -28,6 +28,7 @@ std::uint64_t hash_of(const SoilInput& in, const ReductionInput& reduction) {
   h.add(in.whole_width);
   h.add(in.sleepers);
   h.add(reduction.krylov);
+  h.add(reduction.krylov_at_free_end);
   return h.value();
 }
 

@@ -138,13 +138,14 @@ Eigen::VectorXd dashpots_of(const Soil& soil, int first_plane, int planes) {
 }
 
 ColumnSets make_columns(const Soil& soil, const ReductionInput& input) {
-  if (input.krylov < 0) throw InputError(fmt::format("krylov is {}; it must be 0 or more", input.krylov));
+  for (int krylov : {input.krylov, input.krylov_at_free_end})
+    if (krylov < 0) throw InputError(fmt::format("krylov is {}; it must be 0 or more", krylov));
   const Windows windows = place_windows(soil, input.window);
   ColumnSets result{{}, std::vector<int>(static_cast<std::size_t>(soil.footings())), windows.first_plane};
   const int last = soil.planes - windows.planes;
-  auto add_window = [&](int first_plane, const std::vector<int>& footings) {
+  auto add_window = [&](int first_plane, const std::vector<int>& footings, int krylov) {
     if (footings.empty()) return;
-    for (SoilColumns& set : Window(soil, first_plane, windows.planes).columns(footings, input.krylov))
+    for (SoilColumns& set : Window(soil, first_plane, windows.planes).columns(footings, krylov))
       result.sets.push_back(std::move(set));
   };
   // Footings that share the window at an end have columns of their own there, the others those of the first
@@ -154,14 +155,20 @@ ColumnSets make_columns(const Soil& soil, const ReductionInput& input) {
     const int begin = windows.first_plane[static_cast<std::size_t>(f)];
     (begin == 0 ? at_start : begin == last ? at_end : between).push_back(f);
   }
+  auto krylov_at = [&](Support end) {
+    return end == Support::free ? input.krylov_at_free_end : input.krylov;
+  };
   int sets = 0;
   for (int f : at_start) result.set_of[static_cast<std::size_t>(f)] = sets++;
-  add_window(0, at_start);
+  add_window(0, at_start,
+             last == 0 ? std::max(krylov_at(soil.input.start), krylov_at(soil.input.end))
+                       : krylov_at(soil.input.start));
   for (int f : at_end) result.set_of[static_cast<std::size_t>(f)] = sets++;
-  add_window(last, at_end);
+  add_window(last, at_end, krylov_at(soil.input.end));
   for (int f : between) result.set_of[static_cast<std::size_t>(f)] = sets;
   if (!between.empty())
-    add_window(windows.first_plane[static_cast<std::size_t>(between.front())], {between.front()});
+    add_window(windows.first_plane[static_cast<std::size_t>(between.front())], {between.front()},
+               input.krylov);
   return result;
 }
 

@@ -7,8 +7,8 @@
 
 namespace trackbed::fem {
 
-/// Displacements of a run of planes, a few for one footing: nodes plane by plane, three displacements each.
-/// Those of a footing far from both ends serve many footings, shifted.
+/// Displacements of a run of planes, a few for one footing, more beside a free end: nodes plane by plane,
+/// three displacements each. Those of a footing far from both ends serve many footings, shifted.
 struct SoilColumns {
   Eigen::MatrixXd values;  // orthonormal in mass
   Eigen::MatrixXd forces;  // K values

@@ -203,7 +203,7 @@ TEST(Symmetry, HalfMovesLikeTheWhole) {
       EXPECT_NEAR(both.displacement()[entry(i / each, rows - 1 + side * (i % each / along), i % along)],
                   one.displacement()[i], 1e-10 * size);
   // The same at rest with few unknowns: the whole's are twice as many shapes.
-  const ReducedSoil small = reduce(half, {0, 18}), large = reduce(whole, {0, 18});
+  const ReducedSoil small = reduce(half, {0, 0, 18}), large = reduce(whole, {0, 0, 18});
   const Eigen::VectorXd u = small.nodes * (small.nodes.transpose() * f).cwiseQuotient(small.stiffness);
   const Eigen::VectorXd v = large.nodes * (large.nodes.transpose() * f_whole).cwiseQuotient(large.stiffness);
   EXPECT_NEAR(v[entry(2, rows + 1, 1)], u[2 * each + 2 * along + 1], 1e-9 * u.cwiseAbs().maxCoeff());

@@ -81,7 +81,8 @@ fem::SoilInput soil_input(const TrackCaseInput& in, TrackZone zone) {
 std::unique_ptr<fem::Part> make_ground(const TrackCaseInput& in, TrackZone zone,
                                        const std::filesystem::path& keep) {
   const fem::Soil soil = fem::make_soil(soil_input(in, zone));
-  const fem::ReductionInput reduction{in.track.ground.krylov, in.track.ground.window};
+  const fem::ReductionInput reduction{in.track.ground.krylov, in.track.ground.krylov_beside_bridge,
+                                      in.track.ground.window};
   auto reduced = fem::make_reduced_part(
       soil, keep.empty() ? fem::reduce(soil, reduction) : fem::reduce(soil, reduction, keep),
       in.track.sleeper.patches);

@@ -54,6 +54,7 @@ struct GroundInput {
   std::string side = "roller", base = "fixed", ends = "absorbing";
   double mass_damping = 10, stiffness_damping = 5e-5;
   int krylov = 3;
+  int krylov_beside_bridge = 8;
   double window = 12;
 };
 

@@ -107,6 +107,9 @@ void declare(Fields& f, GroundInput& in) {
   f.integer("krylov", in.krylov, {.at_least = 0, .at_most = 8},
             "shapes beside the static one for each pressure shape of a sleeper, for reduced ground; with 4 "
             "it follows blows of 10 ms within 1 % at 75 mm, with 3 within 2 %");
+  f.integer(
+      "krylov_beside_bridge", in.krylov_beside_bridge, {.at_least = 0, .at_most = 12},
+      "the same for sleepers within half a window of the bridge, which hang and strike with blows of 2 ms");
   f.quantity("window", in.window, Dimension::length, positive,
              "length of ground in which a sleeper's shapes are worked out, for reduced ground");
 }
