@@ -312,7 +312,10 @@ void CoupledSystem::find_rest() {
     for (Index l = 0; l < links(); ++l)
       memory_[at(l)].deepest = std::max(memory_[at(l)].deepest, closing_(l));
     const double change = (u_ - before).cwiseAbs().maxCoeff();
-    if (shift <= 1 && change <= rest_tolerance * u_.cwiseAbs().maxCoeff()) return;
+    const double enough = rest_tolerance * u_.cwiseAbs().maxCoeff();
+    // A smaller shift that settles nothing more only makes rounding larger.
+    const bool is_rounding = is_slow && change <= 10 * enough && change > 0.5 * last_change;
+    if (shift <= 1 && (change <= enough || is_rounding)) return;
     is_slow = shift > 1 || change > 0.1 * last_change;
     last_change = change;
   }
