@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <string>
 #include <string_view>
 
 #include "base/error.h"
 #include "commands.h"
+#include "fem/blas.h"
 
 namespace {
 
@@ -45,20 +47,23 @@ int dispatch(int argc, char** argv) {
   return asked ? 0 : 2;
 }
 
-/// Threads wait for each other several times a step. On a machine shared with other work, long spinning keeps
-/// the cores from whoever has work; the OpenMP library reads how long to spin once, when it is loaded.
-void wait_politely(char** argv) {
+/// What libraries read once, when they are loaded: a second start, with what suits this machine.
+void tune_libraries(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
+  // Threads wait for each other several times a step. On a machine shared with other work, long spinning
+  // keeps the cores from whoever has work.
   ::setenv("GOMP_SPINCOUNT", "20000", 1);
   // Large pages, where the system leaves the choice to the program: a bed is tens of megabytes.
   ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
-  ::execv("/proc/self/exe", argv);  // returns only when it fails; then all goes on, with the longer wait
+  if (const std::string kernels = trackbed::fem::blas_kernels_to_ask_for(); !kernels.empty())
+    ::setenv("OPENBLAS_CORETYPE", kernels.c_str(), 0);
+  ::execv("/proc/self/exe", argv);  // returns only when it fails; then all goes on as it is
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  wait_politely(argv);
+  tune_libraries(argv);
   try {
     return dispatch(argc, argv);
   } catch (const trackbed::InputError& error) {

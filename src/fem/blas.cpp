@@ -2,6 +2,7 @@
 
 #include <cblas.h>
 
+#include <string_view>
 #include <vector>
 
 #include "base/error.h"
@@ -13,6 +14,15 @@ namespace trackbed::fem {
 
 void use_one_blas_thread() {
   openblas_set_num_threads(1);
+}
+
+std::string blas_kernels_to_ask_for() {
+#if defined(__x86_64__)
+  if (std::string_view(openblas_get_corename()) != "Prescott") return "";
+  if (__builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq")) return "SkylakeX";
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return "Haswell";
+#endif
+  return "";
 }
 
 Eigen::VectorXd diagonalise(Eigen::MatrixXd& matrix) {

@@ -79,12 +79,22 @@ VectorXd CoupledSystem::to_ports(const VectorXd& forces) const {
   return ports;
 }
 
+/// Parts know nothing of each other: threads share them, and the bits stay the same.
+void CoupledSystem::each_part(const std::function<void(Part& part, Index first)>& work) const {
+  for (const auto& [part, first] : parts_)
+    if (part->uses_threads()) work(*part, first);
+#pragma omp parallel for schedule(dynamic)
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    if (!parts_[p].part->uses_threads()) work(*parts_[p].part, parts_[p].first);
+}
+
 /// G forces: by how much links open.
 VectorXd CoupledSystem::answer_to(const VectorXd& forces) const {
   const VectorXd ports = to_ports(forces);
   VectorXd moved(u_.size());
-  for (const auto& [part, first] : parts_)
-    part->respond(ports.segment(first, part->ports()), moved.segment(first, part->ports()));
+  each_part([&](const Part& part, Index first) {
+    part.respond(ports.segment(first, part.ports()), moved.segment(first, part.ports()));
+  });
   return -closings_of(moved);
 }
 
@@ -149,8 +159,9 @@ class CoupledSystem::Preconditioner {
 };
 
 void CoupledSystem::predict() {
-  for (const auto& [part, first] : parts_)
-    part->predict(predicted_u_.segment(first, part->ports()), predicted_v_.segment(first, part->ports()));
+  each_part([&](Part& part, Index first) {
+    part.predict(predicted_u_.segment(first, part.ports()), predicted_v_.segment(first, part.ports()));
+  });
   free_closing_ = closings_of(predicted_u_);
   for (Index k = 0; k < links(); ++k) free_closing_(k) -= links_[at(k)].gap;
   free_rate_ = closings_of(predicted_v_);
@@ -286,11 +297,11 @@ void CoupledSystem::book_energy(const VectorXd& force, const VectorXd& closing, 
 
 void CoupledSystem::advance() {
   const VectorXd ports = to_ports(force_);
-  for (const auto& [part, first] : parts_) {
-    const Index n = part->ports();
-    part->advance(ports.segment(first, n));
-    part->state(u_.segment(first, n), v_.segment(first, n));
-  }
+  each_part([&](Part& part, Index first) {
+    const Index n = part.ports();
+    part.advance(ports.segment(first, n));
+    part.state(u_.segment(first, n), v_.segment(first, n));
+  });
 }
 
 /// Steps with a falling shift: large enough at first that nothing falls far, then so small that steps settle.

@@ -8,6 +8,7 @@
 // links) or Cholesky (on the way to rest).
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -90,6 +91,7 @@ class CoupledSystem {
     std::unique_ptr<Part> part;
     Index first = 0;
   };
+  void each_part(const std::function<void(Part& part, Index first)>& work) const;
   void predict();
   void solve();
   void advance();

@@ -25,7 +25,8 @@ ImplicitPart<Matrix>::ImplicitPart(Structure<Matrix> structure, Index copies)
     throw std::invalid_argument("matrices of a part do not fit each other");
   u_ = v_ = a_ = start_u_ = start_v_ = delta_ = MatrixXd::Zero(n, copies);
   unbalanced_ = structure_.load.replicate(1, copies);
-  port_u_ = port_v_ = port_force_ = free_u_ = free_v_ = VectorXd::Zero(structure_.ports.cols() * copies);
+  port_u_ = port_v_ = port_a_ = port_delta_ = port_force_ = free_u_ = free_v_ =
+      VectorXd::Zero(structure_.ports.cols() * copies);
 }
 
 template <class Matrix>
@@ -57,6 +58,7 @@ void ImplicitPart<Matrix>::move_by(const TimeScheme& scheme) {
                weight * (scheme.velocity_per_displacement() * structure_.damping + structure_.stiffness),
            weight);
   a_ = Factor(structure_.mass).solve(unbalanced_);
+  port_a_ = (structure_.ports.transpose() * a_).reshaped();
   lost_ = {};
 }
 
@@ -87,13 +89,19 @@ void ImplicitPart<Matrix>::predict(Eigen::Ref<VectorXd> displacement, Eigen::Ref
     delta_ = factor_->solve((1 + alpha) * (loads - damping * start_v_ - stiffness * start_u_) -
                             alpha * unbalanced_);
   }
-  const Index copies = u_.cols(), p = ports.cols();
-  const double rate = at_rest_ ? 0 : scheme_.velocity_per_displacement();
-  MatrixXd both(u_.rows(), 2 * copies);  // the ports' matrix is large: read once
-  both << start_u_ + delta_, start_v_ + rate * delta_;
-  const MatrixXd at_ports = ports.transpose() * both;
-  displacement = free_u_ = at_ports.leftCols(copies).reshaped(p * copies, 1);
-  velocity = free_v_ = at_ports.rightCols(copies).reshaped(p * copies, 1);
+  // Ports follow the same rule as coordinates: their large matrix is read once.
+  port_delta_ = (ports.transpose() * delta_).reshaped();
+  free_u_ = port_u_ + port_delta_;
+  if (at_rest_) {
+    free_v_.setZero();
+  } else {
+    const double dt = scheme_.step;
+    free_u_ += dt * port_v_ + dt * dt * (0.5 - scheme_.beta()) * port_a_;
+    free_v_ =
+        port_v_ + dt * (1 - scheme_.gamma()) * port_a_ + scheme_.velocity_per_displacement() * port_delta_;
+  }
+  displacement = free_u_;
+  velocity = free_v_;
 }
 
 template <class Matrix>
@@ -136,6 +144,7 @@ void ImplicitPart<Matrix>::advance(const Eigen::Ref<const VectorXd>& force) {
   const VectorXd port_u = free_u_ + moved;
   if (!at_rest_) {
     port_v_ = free_v_ + scheme_.velocity_per_displacement() * moved;
+    port_a_ = (port_delta_ + moved) / (scheme_.beta() * scheme_.step * scheme_.step);
     lost_.numerical += 0.5 * (port_force_ + force).dot(port_u - port_u_);
     end_step(delta);
   } else {

@@ -82,9 +82,10 @@ class ImplicitPart : public Part {
   MatrixXd delta_;              // from there to the end of the step without coupling forces
   MatrixXd by_ports_;           // n x p: answer of the coordinates to unit forces at ports, when p is small
   MatrixXd port_compliance_;    // p x p, likewise
-  VectorXd port_u_, port_v_;    // of all copies
-  VectorXd port_force_;         // at the start of the step
-  VectorXd free_u_, free_v_;    // ports at the end of the step without coupling forces
+  VectorXd port_u_, port_v_, port_a_;  // of all copies
+  VectorXd port_delta_;                // of delta_
+  VectorXd port_force_;                // at the start of the step
+  VectorXd free_u_, free_v_;           // ports at the end of the step without coupling forces
   std::unique_ptr<Factor> factor_;
   TimeScheme scheme_;
   double per_force_ = 1;  // 1 + alpha, or 1 on the way to rest

@@ -61,6 +61,9 @@ class Part {
   /// Ports as they are, in place and on the move.
   virtual void state(Eigen::Ref<VectorXd> displacement, Eigen::Ref<VectorXd> velocity) const = 0;
   virtual PartEnergy energy() const = 0;
+
+  /// Does it share its own steps among threads? Others step side by side.
+  virtual bool uses_threads() const { return false; }
 };
 
 }  // namespace trackbed::fem

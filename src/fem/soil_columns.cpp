@@ -42,14 +42,17 @@ class Window {
       press(footings[f], right.middleCols(static_cast<Eigen::Index>(f) * shapes, shapes));
     for (int level = 0; level <= krylov; ++level) {
       const Eigen::MatrixXd solution = factor_.solve(right);
+      bool is_new = true;
+#pragma omp parallel for schedule(dynamic) reduction(&& : is_new)
       for (std::size_t f = 0; f < footings.size(); ++f) {
         const Eigen::Index at = static_cast<Eigen::Index>(f) * shapes;
-        for (Eigen::Index c = 0; c < shapes; ++c) {
-          if (!bases[f].add(to_nodes(solution.col(at + c), free_)))
-            throw InputError(fmt::format("krylov is {}; the mesh has no more shapes than {}", krylov, level));
-          right.col(at + c) = to_free(mass_.cwiseProduct(bases[f].columns().rightCols<1>()));
+        for (Eigen::Index c = at; c < at + shapes && is_new; ++c) {
+          is_new = bases[f].add(to_nodes(solution.col(c), free_));
+          if (is_new) right.col(c) = to_free(mass_.cwiseProduct(bases[f].columns().rightCols<1>()));
         }
       }
+      if (!is_new)
+        throw InputError(fmt::format("krylov is {}; the mesh has no more shapes than {}", krylov, level));
     }
     std::vector<SoilColumns> sets;
     for (std::size_t f = 0; f < footings.size(); ++f)

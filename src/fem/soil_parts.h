@@ -34,6 +34,7 @@ class ExplicitPart : public Part {
   void state(Eigen::Ref<VectorXd> displacement, Eigen::Ref<VectorXd> velocity) const override;
   /// Not kept: the run's balance leaves it out.
   PartEnergy energy() const override { return {}; }
+  bool uses_threads() const override { return true; }
 
  private:
   VectorXd to_nodes(const VectorXd& forces) const;
