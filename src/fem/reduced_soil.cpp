@@ -23,10 +23,10 @@ class Projection {
       : soil_(soil),
         columns_(columns),
         planes_(static_cast<int>(columns.sets.front().values.rows()) / (3 * soil.section_size())),
-        footings_(soil.footings()) {
-    has_dashpots_ = false;
-    for (Support s : {soil.input.start, soil.input.end, soil.input.side, soil.input.base})
-      has_dashpots_ = has_dashpots_ || s == Support::absorbing;
+        footings_(soil.footings()),
+        masses_(masses_of(soil, 0, soil.planes)),
+        dashpots_(dashpots_of(soil, 0, soil.planes)) {
+    has_dashpots_ = !dashpots_.isZero(0);
     for (int f = 0; f < footings_; ++f) at_.push_back(at_.back() + set(f).values.cols());
     const Eigen::Index n = at_.back();
     mass.setZero(n, n);
@@ -52,17 +52,25 @@ class Projection {
   int set_index(int f) const { return columns_.set_of[static_cast<std::size_t>(f)]; }
   const SoilColumns& set(int f) const { return columns_.sets[static_cast<std::size_t>(set_index(f))]; }
 
-  /// What the columns of j do to those of i.
+  /// What the columns of j do to those of i. A few planes at a time stay in a core's cache.
   Block pair(int i, int j) const {
+    constexpr int planes_at_once = 4;
     const int from = std::max(begin(i), begin(j)), to = std::min(begin(i), begin(j)) + planes_;
-    const Eigen::Index node = 3 * soil_.section_size(), rows = (to - from) * node;
-    auto part = [&](const Eigen::MatrixXd& m, int f) { return m.middleRows((from - begin(f)) * node, rows); };
-    const auto vi = part(set(i).values, i), vj = part(set(j).values, j);
+    const Eigen::Index node = 3 * soil_.section_size();
     Block b;
-    b.stiffness = vi.transpose() * part(set(j).forces, j);
-    b.mass = vi.transpose() * (masses_of(soil_, from, to - from).asDiagonal() * vj).eval();
-    if (has_dashpots_)
-      b.dashpots = vi.transpose() * (dashpots_of(soil_, from, to - from).asDiagonal() * vj).eval();
+    for (Eigen::MatrixXd* m : {&b.mass, &b.stiffness, &b.dashpots}) m->setZero(count(i), count(j));
+    Eigen::MatrixXd weighted;
+    for (int p = from; p < to; p += planes_at_once) {
+      const Eigen::Index rows = std::min(planes_at_once, to - p) * node;
+      auto part = [&](const Eigen::MatrixXd& m, int f) { return m.middleRows((p - begin(f)) * node, rows); };
+      const auto vi = part(set(i).values, i), vj = part(set(j).values, j);
+      b.stiffness.noalias() += vi.transpose() * part(set(j).forces, j);
+      weighted = masses_.segment(p * node, rows).asDiagonal() * vj;
+      b.mass.noalias() += vi.transpose() * weighted;
+      if (!has_dashpots_ || dashpots_.segment(p * node, rows).isZero(0)) continue;
+      weighted = dashpots_.segment(p * node, rows).asDiagonal() * vj;
+      b.dashpots.noalias() += vi.transpose() * weighted;
+    }
     return b;
   }
 
@@ -117,16 +125,16 @@ class Projection {
               values.row(3 * node + 2);
         }
     }
-    const Eigen::VectorXd masses = masses_of(soil_, begin(f), planes_);
     for (int node = 0; node < planes_ * size; ++node)
-      gravity.segment(at(f), count(f)) -=
-          gravity_acceleration * masses[3 * node + 2] * values.row(3 * node + 2).transpose();
+      gravity.segment(at(f), count(f)) -= gravity_acceleration * masses_[3 * (begin(f) * size + node) + 2] *
+                                          values.row(3 * node + 2).transpose();
   }
 
   const Soil& soil_;
   const ColumnSets& columns_;
   std::vector<Eigen::Index> at_ = {0};
   int planes_, footings_;
+  Eigen::VectorXd masses_, dashpots_;  // of all planes
   bool has_dashpots_;
 };
 
