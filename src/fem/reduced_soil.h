@@ -36,5 +36,7 @@ ReducedSoil reduce(const Soil&, const ReductionInput& = {});
 /// The same, read from `folder` when it has been worked out there before for this very input, else kept
 /// there. The file is named by a hash of the input and written beside and moved into place.
 ReducedSoil reduce(const Soil&, const ReductionInput&, const std::filesystem::path& folder);
+/// Is it there, whole or not?
+bool is_kept(const Soil&, const ReductionInput&, const std::filesystem::path& folder);
 
 }  // namespace trackbed::fem

@@ -129,11 +129,20 @@ void write(const std::filesystem::path& file, std::uint64_t key, const ReducedSo
   }
 }
 
+std::filesystem::path file_of(std::uint64_t key, const std::filesystem::path& folder) {
+  return folder / fmt::format("soil-{:016x}", key);
+}
+
 }  // namespace
+
+bool is_kept(const Soil& soil, const ReductionInput& input, const std::filesystem::path& folder) {
+  std::error_code none;
+  return std::filesystem::exists(file_of(hash_of(soil.input, input), folder), none);
+}
 
 ReducedSoil reduce(const Soil& soil, const ReductionInput& input, const std::filesystem::path& folder) {
   const std::uint64_t key = hash_of(soil.input, input);
-  const std::filesystem::path file = folder / fmt::format("soil-{:016x}", key);
+  const std::filesystem::path file = file_of(key, folder);
   ReducedSoil reduced;
   if (read(file, key, reduced)) return reduced;
   std::error_code failed;

@@ -78,11 +78,18 @@ fem::SoilInput soil_input(const TrackCaseInput& in, TrackZone zone) {
   return soil;
 }
 
-std::unique_ptr<fem::Part> make_ground(const TrackCaseInput& in, TrackZone zone,
-                                       const std::filesystem::path& keep) {
+/// Where grounds are kept, and who is told before one is worked out.
+struct Grounds {
+  const std::filesystem::path& keep;
+  const std::function<void(TrackZone)>& reducing;
+};
+
+std::unique_ptr<fem::Part> make_ground(const TrackCaseInput& in, TrackZone zone, const Grounds& grounds) {
   const fem::Soil soil = fem::make_soil(soil_input(in, zone));
   const fem::ReductionInput reduction{in.track.ground.krylov, in.track.ground.krylov_beside_bridge,
                                       in.track.ground.window};
+  const std::filesystem::path& keep = grounds.keep;
+  if (grounds.reducing && (keep.empty() || !fem::is_kept(soil, reduction, keep))) grounds.reducing(zone);
   auto reduced = fem::make_reduced_part(
       soil, keep.empty() ? fem::reduce(soil, reduction) : fem::reduce(soil, reduction, keep),
       in.track.sleeper.patches);
@@ -105,7 +112,7 @@ void add_own_supports(const TrackLayoutInput& t, TrackZone kind, fem::Zone& zone
 }
 
 /// What lies under the sleepers of a zone, and how they touch it.
-fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const std::filesystem::path& keep) {
+fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const Grounds& grounds) {
   const TrackLayoutInput& t = in.track;
   fem::Zone zone;
   zone.sleepers = sleepers_of(t)[static_cast<std::size_t>(kind)];
@@ -123,7 +130,7 @@ fem::Zone make_zone(const TrackCaseInput& in, TrackZone kind, const std::filesys
     for (double& force : law.force) force /= 2;  // of half a sleeper
     zone.contact = std::move(law);
   } else if (is_embankment && t.ground.model != "springs") {
-    zone.ground = make_ground(in, kind, keep);
+    zone.ground = make_ground(in, kind, grounds);
   } else {
     const fem::TrackInput model = track_input(in);
     zone.ground = fem::make_springs({t.springs.stiffness, t.springs.damping, t.springs.mass}, zone.sleepers,
@@ -291,11 +298,12 @@ fem::TrackInput track_input(const TrackCaseInput& in) {
   return model;
 }
 
-fem::TrackModel make_track(const TrackCaseInput& in, const std::filesystem::path& keep) {
+fem::TrackModel make_track(const TrackCaseInput& in, const std::filesystem::path& keep,
+                           const std::function<void(TrackZone)>& reducing) {
   std::vector<fem::Zone> zones;
   for (const TrackZone zone :
        {TrackZone::lead_in, TrackZone::approach, TrackZone::bridge, TrackZone::departure, TrackZone::run_out})
-    zones.push_back(make_zone(in, zone, keep));
+    zones.push_back(make_zone(in, zone, {keep, reducing}));
   return {track_input(in), std::move(zones)};
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -174,8 +175,9 @@ void check_track(const Document& document, const TrackCaseInput& in);
 fem::TrackInput track_input(const TrackCaseInput& in);
 double approach_start(const TrackLayoutInput& track);
 
-/// Builds the model with its ground; ground that was worked out before is taken from `keep`.
-/// Throws InputError, RunError.
-fem::TrackModel make_track(const TrackCaseInput& in, const std::filesystem::path& keep);
+/// Builds the model with its ground; ground that was worked out before is taken from `keep`. Calls `reducing`
+/// with the embankment before it works out one, which may take minutes. Throws InputError, RunError.
+fem::TrackModel make_track(const TrackCaseInput& in, const std::filesystem::path& keep,
+                           const std::function<void(TrackZone)>& reducing = {});
 
 }  // namespace trackbed

@@ -1,6 +1,10 @@
 #include "lab/track/track_run.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "base/hash.h"
 #include "base/stopwatch.h"
@@ -84,7 +88,14 @@ Summary run_track(const Document& document, const TrackCaseInput& in, const RunO
   summary.threads = use_threads(options.threads);
   summary.input = echo(in);
   make_folder(options.out);
-  fem::TrackModel track = make_track(in, options.keep);
+  fem::TrackModel track = make_track(in, options.keep, [&](TrackZone zone) {
+    if (options.quiet || !options.progress) return;
+    fmt::print(options.progress, "1/2 rest  the ground {} the bridge is worked out, some minutes{}\n",
+               zone == TrackZone::approach ? "before" : "behind",
+               options.keep.empty() ? std::string()
+                                    : fmt::format("; later runs take it from {}", options.keep.string()));
+    std::fflush(options.progress);
+  });
   const double ground = watch.seconds();
   TrackRecorder recorder(track, in, options.out);
   Progress progress(options.quiet ? nullptr : options.progress);

@@ -79,7 +79,10 @@ TEST(ReducedSoil, IsKeptInAFileAndReadBack) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "trackbed-reduced-soil";
   std::filesystem::remove_all(folder);
   SoilInput in = strip_of_soil();
+  EXPECT_FALSE(is_kept(make_soil(in), {0, 0, 18}, folder));
   const ReducedSoil made = reduce(make_soil(in), {0, 0, 18}, folder);
+  EXPECT_TRUE(is_kept(make_soil(in), {0, 0, 18}, folder));
+  EXPECT_FALSE(is_kept(make_soil(in), {1, 0, 18}, folder));
   auto files = [&] {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
   };
