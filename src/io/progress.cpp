@@ -55,6 +55,10 @@ void Progress::update(const ProgressState& state, Clock::time_point now) {
   print(progress_line(state, rate_, left), false);
 }
 
+void Progress::say(const std::string& line) {
+  if (style_ != Style::quiet) print(line, true);
+}
+
 void Progress::end_stage(const ProgressState& state, Clock::time_point now) {
   const double seconds = seconds_between(stage_start_, now);
   const double since_rate = seconds_between(rate_from_, now);

@@ -35,6 +35,8 @@ class Progress {
   /// Call it at every step: it looks at the clock, and prints when it is time to (terminal: 0.2 s, lines: 5
   /// s).
   void update(const ProgressState& state, Clock::time_point now = Clock::now());
+  /// A line that stays, of what takes long without steps.
+  void say(const std::string& line);
   /// Closes a stage: its last line stays.
   void end_stage(const ProgressState& state, Clock::time_point now = Clock::now());
 

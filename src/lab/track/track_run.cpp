@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <cstdio>
 #include <string>
 
 #include "base/hash.h"
@@ -88,17 +87,16 @@ Summary run_track(const Document& document, const TrackCaseInput& in, const RunO
   summary.threads = use_threads(options.threads);
   summary.input = echo(in);
   make_folder(options.out);
+  std::FILE* const out = options.quiet ? nullptr : options.progress;
   fem::TrackModel track = make_track(in, options.keep, [&](TrackZone zone) {
-    if (options.quiet || !options.progress) return;
-    fmt::print(options.progress, "1/2 rest  the ground {} the bridge is worked out, some minutes{}\n",
-               zone == TrackZone::approach ? "before" : "behind",
-               options.keep.empty() ? std::string()
-                                    : fmt::format("; later runs take it from {}", options.keep.string()));
-    std::fflush(options.progress);
+    Progress(out).say(fmt::format(
+        "1/2 rest  the ground {} the bridge is worked out, some minutes{}",
+        zone == TrackZone::approach ? "before" : "behind",
+        options.keep.empty() ? std::string() : "; later runs take it from " + options.keep.string()));
   });
   const double ground = watch.seconds();
   TrackRecorder recorder(track, in, options.out);
-  Progress progress(options.quiet ? nullptr : options.progress);
+  Progress progress(out);
   summary.stages.push_back(rest(track, in));
   summary.stages.back().results = {{"ground_wall", ground, Dimension::time}};
   recorder.at_rest(track);

@@ -53,6 +53,13 @@ TEST(Progress, OneLineInPlaceOnATerminal) {
   EXPECT_TRUE(text.ends_with("done in 10 s\x1b[K\n"));
 }
 
+TEST(Progress, SaysWhatTakesLong) {
+  const auto say = [](Progress& progress, Progress::Clock::time_point) { progress.say("some minutes"); };
+  EXPECT_EQ(printed(Progress::Style::lines, say), "some minutes\n");
+  EXPECT_EQ(printed(Progress::Style::terminal, say), "\rsome minutes\x1b[K\n");
+  EXPECT_EQ(printed(Progress::Style::quiet, say), "");
+}
+
 TEST(Progress, QuietIsQuiet) {
   EXPECT_EQ(printed(Progress::Style::quiet, ten_seconds), "");
 }
