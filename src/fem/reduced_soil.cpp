@@ -25,8 +25,8 @@ class Projection {
         planes_(static_cast<int>(columns.sets.front().values.rows()) / (3 * soil.section_size())),
         footings_(soil.footings()),
         masses_(masses_of(soil, 0, soil.planes)),
-        dashpots_(dashpots_of(soil, 0, soil.planes)) {
-    has_dashpots_ = !dashpots_.isZero(0);
+        dashpots_(dashpots_of(soil, 0, soil.planes)),
+        has_dashpots_(!dashpots_.isZero(0)) {
     for (int f = 0; f < footings_; ++f) at_.push_back(at_.back() + set(f).values.cols());
     const Eigen::Index n = at_.back();
     mass.setZero(n, n);
@@ -67,7 +67,7 @@ class Projection {
       b.stiffness.noalias() += vi.transpose() * part(set(j).forces, j);
       weighted = masses_.segment(p * node, rows).asDiagonal() * vj;
       b.mass.noalias() += vi.transpose() * weighted;
-      if (!has_dashpots_ || dashpots_.segment(p * node, rows).isZero(0)) continue;
+      if (dashpots_.segment(p * node, rows).isZero(0)) continue;
       weighted = dashpots_.segment(p * node, rows).asDiagonal() * vj;
       b.dashpots.noalias() += vi.transpose() * weighted;
     }
