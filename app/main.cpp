@@ -7,8 +7,10 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <string_view>
+#include <system_error>
 
 #include "base/error.h"
 #include "commands.h"
@@ -57,7 +59,10 @@ void tune_libraries(char** argv) {
   ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
   if (const std::string kernels = trackbed::fem::blas_kernels_to_ask_for(); !kernels.empty())
     ::setenv("OPENBLAS_CORETYPE", kernels.c_str(), 0);
-  ::execv("/proc/self/exe", argv);  // returns only when it fails; then all goes on as it is
+  // By its own path, so that it goes on under its own name. Returns only when it fails; then all goes on as
+  // it is.
+  std::error_code none;
+  ::execv(std::filesystem::read_symlink("/proc/self/exe", none).c_str(), argv);
 }
 
 }  // namespace
