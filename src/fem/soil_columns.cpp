@@ -14,6 +14,13 @@ namespace trackbed::fem {
 
 namespace {
 
+/// Krylov columns of a pressure shape: so many about rest, then so many about loads that grow with exp(s t).
+struct Levels {
+  int at_rest, in_blows;
+  double s;  // [1/s]
+  int count() const { return at_rest + in_blows; }
+};
+
 /// A run of planes of the soil, held at its cuts.
 class Window {
  public:
@@ -23,7 +30,7 @@ class Window {
         planes_(planes),
         mesh_(extrude(soil.section, 0, soil.input.element_size, planes)),
         free_(planes * soil.section_size()),
-        factor_(hold(), free_),
+        held_stiffness_(hold()),
         mass_(masses_of(soil, first_plane, planes)) {
     Freedoms all(free_.nodes());
     all.number();
@@ -31,17 +38,19 @@ class Window {
   }
 
   /// The columns of footings whose windows this is.
-  std::vector<SoilColumns> columns(const std::vector<int>& footings, int krylov) const {
+  std::vector<SoilColumns> columns(const std::vector<int>& footings, const Levels& krylov) const {
     const Eigen::Index shapes = soil_.shapes.cols();
     const MassBasis empty([&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return mass_.cwiseProduct(v); },
-                          mass_.size(), shapes*(1 + krylov));
+                          mass_.size(), shapes*(1 + krylov.count()));
     std::vector<MassBasis> bases(footings.size(), empty);
     Eigen::MatrixXd right(free_.size(), shapes * static_cast<Eigen::Index>(footings.size()));
     right.setZero();
     for (std::size_t f = 0; f < footings.size(); ++f)
       press(footings[f], right.middleCols(static_cast<Eigen::Index>(f) * shapes, shapes));
-    for (int level = 0; level <= krylov; ++level) {
-      const Eigen::MatrixXd solution = factor_.solve(right);
+    SparseCholesky factor(held_stiffness_, free_);
+    for (int level = 0; level <= krylov.count(); ++level) {
+      if (level == krylov.at_rest + 1) factor.refactor(stiffened_by_mass(krylov.s));
+      const Eigen::MatrixXd solution = factor.solve(right);
       bool is_new = true;
 #pragma omp parallel for schedule(dynamic) reduction(&& : is_new)
       for (std::size_t f = 0; f < footings.size(); ++f) {
@@ -52,7 +61,8 @@ class Window {
         }
       }
       if (!is_new)
-        throw InputError(fmt::format("krylov is {}; the mesh has no more shapes than {}", krylov, level));
+        throw InputError(
+            fmt::format("krylov is {}; the mesh has no more shapes than {}", krylov.count(), level));
     }
     std::vector<SoilColumns> sets;
     for (std::size_t f = 0; f < footings.size(); ++f)
@@ -76,6 +86,13 @@ class Window {
     return assemble_stiffness(mesh_, soil_.materials, soil_.input.element, free_);
   }
 
+  /// K + s^2 M of free displacements.
+  SparseMatrix stiffened_by_mass(double s) const {
+    SparseMatrix k = held_stiffness_;
+    k.diagonal() += s * s * to_free(mass_);
+    return k;
+  }
+
   void press(int footing, Eigen::Ref<Eigen::MatrixXd> right) const {
     const int offset = first_ * soil_.section_size();
     for (int row = 0; row < soil_.nodes_across; ++row)
@@ -97,7 +114,7 @@ class Window {
   int first_, planes_;
   HexMesh mesh_;
   Freedoms free_;
-  SparseCholesky factor_;
+  SparseMatrix held_stiffness_;  // of free displacements
   Eigen::VectorXd mass_;
   SparseMatrix stiffness_;  // of all displacements, held ones too
 };
@@ -143,10 +160,12 @@ Eigen::VectorXd dashpots_of(const Soil& soil, int first_plane, int planes) {
 ColumnSets make_columns(const Soil& soil, const ReductionInput& input) {
   for (int krylov : {input.krylov, input.krylov_at_free_end})
     if (krylov < 0) throw InputError(fmt::format("krylov is {}; it must be 0 or more", krylov));
+  if (input.blow_frequency < 0)
+    throw InputError(fmt::format("blow_frequency is {} Hz; it must be 0 or more", input.blow_frequency));
   const Windows windows = place_windows(soil, input.window);
   ColumnSets result{{}, std::vector<int>(static_cast<std::size_t>(soil.footings())), windows.first_plane};
   const int last = soil.planes - windows.planes;
-  auto add_window = [&](int first_plane, const std::vector<int>& footings, int krylov) {
+  auto add_window = [&](int first_plane, const std::vector<int>& footings, const Levels& krylov) {
     if (footings.empty()) return;
     for (SoilColumns& set : Window(soil, first_plane, windows.planes).columns(footings, krylov))
       result.sets.push_back(std::move(set));
@@ -158,20 +177,22 @@ ColumnSets make_columns(const Soil& soil, const ReductionInput& input) {
     const int begin = windows.first_plane[static_cast<std::size_t>(f)];
     (begin == 0 ? at_start : begin == last ? at_end : between).push_back(f);
   }
-  auto krylov_at = [&](Support end) {
-    return end == Support::free ? input.krylov_at_free_end : input.krylov;
+  const Levels inside{input.krylov, 0, 0};
+  auto levels_at = [&](Support end) {
+    if (end != Support::free) return inside;
+    const int at_rest = input.blow_frequency > 0 ? std::min(input.krylov, input.krylov_at_free_end)
+                                                 : input.krylov_at_free_end;
+    return Levels{at_rest, input.krylov_at_free_end - at_rest, 2 * M_PI * input.blow_frequency};
   };
   int sets = 0;
   for (int f : at_start) result.set_of[static_cast<std::size_t>(f)] = sets++;
-  add_window(0, at_start,
-             last == 0 ? std::max(krylov_at(soil.input.start), krylov_at(soil.input.end))
-                       : krylov_at(soil.input.start));
+  const Levels at_first = levels_at(soil.input.start), at_last = levels_at(soil.input.end);
+  add_window(0, at_start, last == 0 && at_last.count() > at_first.count() ? at_last : at_first);
   for (int f : at_end) result.set_of[static_cast<std::size_t>(f)] = sets++;
-  add_window(last, at_end, krylov_at(soil.input.end));
+  add_window(last, at_end, at_last);
   for (int f : between) result.set_of[static_cast<std::size_t>(f)] = sets;
   if (!between.empty())
-    add_window(windows.first_plane[static_cast<std::size_t>(between.front())], {between.front()},
-               input.krylov);
+    add_window(windows.first_plane[static_cast<std::size_t>(between.front())], {between.front()}, inside);
   return result;
 }
 

@@ -25,8 +25,9 @@ struct ColumnSets {
 Eigen::VectorXd masses_of(const Soil&, int first_plane, int planes);
 Eigen::VectorXd dashpots_of(const Soil&, int first_plane, int planes);
 
-/// Static columns K^-1 B of the pressure shapes B, and Krylov columns K^-1 M V of those before, each
-/// footing's in a window about it that is held where it is cut out of the soil.
+/// Static columns K^-1 B of the pressure shapes B, and Krylov columns K^-1 M V, beside a free end also
+/// (K + s^2 M)^-1 M V, of those before, each footing's in a window about it that is held where it is cut out
+/// of the soil. Throws InputError when there are fewer than none, or more than the mesh has.
 ColumnSets make_columns(const Soil&, const ReductionInput&);
 
 }  // namespace trackbed::fem

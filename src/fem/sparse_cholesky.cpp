@@ -98,6 +98,15 @@ struct SparseCholesky::Parts {
   ~Parts() {
     if (factor) cholmod_l_free_factor(&factor, &common.c);
   }
+  void factorize(Upper& m) {
+    cholmod_common* c = &common.c;
+    if (factor) cholmod_l_factorize(&m.view, factor, c);
+    if (!factor || c->status == CHOLMOD_OUT_OF_MEMORY)
+      throw RunError("not enough memory to factor a finite element model of " + std::to_string(m.view.ncol) +
+                     " unknowns");
+    if (c->status != CHOLMOD_OK)
+      throw RunError("a finite element model is not held: its stiffness matrix is not positive definite");
+  }
 };
 
 SparseCholesky::SparseCholesky(const SparseMatrix& m, const Freedoms& freedoms) : parts_(new Parts) {
@@ -125,12 +134,13 @@ SparseCholesky::SparseCholesky(const SparseMatrix& m, const Freedoms& freedoms) 
       order.push_back(f);
   Upper upper(m);
   parts_->factor = cholmod_l_analyze_p(&upper.view, order.data(), nullptr, 0, c);
-  if (parts_->factor) cholmod_l_factorize(&upper.view, parts_->factor, c);
-  if (!parts_->factor || c->status == CHOLMOD_OUT_OF_MEMORY)
-    throw RunError("not enough memory to factor a finite element model of " + std::to_string(m.cols()) +
-                   " unknowns");
-  if (c->status != CHOLMOD_OK)
-    throw RunError("a finite element model is not held: its stiffness matrix is not positive definite");
+  parts_->factorize(upper);
+}
+
+void SparseCholesky::refactor(const SparseMatrix& m) {
+  use_one_blas_thread();
+  Upper upper(m);
+  parts_->factorize(upper);
 }
 
 SparseCholesky::~SparseCholesky() = default;

@@ -21,6 +21,9 @@ class SparseCholesky {
   ~SparseCholesky();
   SparseCholesky(SparseCholesky&&) noexcept;
 
+  /// Takes another matrix of the same pattern: the order of the nodes stays. Throws as above.
+  void refactor(const SparseMatrix&);
+
   /// Solutions, a column for each right-hand side. Two factors may be in use at once.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right_hand_sides) const;
 

@@ -87,7 +87,7 @@ struct Grounds {
 std::unique_ptr<fem::Part> make_ground(const TrackCaseInput& in, TrackZone zone, const Grounds& grounds) {
   const fem::Soil soil = fem::make_soil(soil_input(in, zone));
   const fem::ReductionInput reduction{in.track.ground.krylov, in.track.ground.krylov_beside_bridge,
-                                      in.track.ground.window};
+                                      in.track.ground.window, in.track.ground.blow_frequency};
   const std::filesystem::path& keep = grounds.keep;
   if (grounds.reducing && (keep.empty() || !fem::is_kept(soil, reduction, keep))) grounds.reducing(zone);
   auto reduced = fem::make_reduced_part(

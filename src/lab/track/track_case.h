@@ -56,6 +56,7 @@ struct GroundInput {
   double mass_damping = 10, stiffness_damping = 5e-5;
   int krylov = 3;
   int krylov_beside_bridge = 8;
+  double blow_frequency = 200;
   double window = 12;
 };
 

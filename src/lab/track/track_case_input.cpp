@@ -110,6 +110,8 @@ void declare(Fields& f, GroundInput& in) {
   f.integer(
       "krylov_beside_bridge", in.krylov_beside_bridge, {.at_least = 0, .at_most = 12},
       "the same for sleepers within half a window of the bridge, which hang and strike with blows of 2 ms");
+  f.quantity("blow_frequency", in.blow_frequency, Dimension::frequency, not_negative,
+             "of the blows that these follow: those beyond `krylov` are worked out about it, not about rest");
   f.quantity("window", in.window, Dimension::length, positive,
              "length of ground in which a sleeper's shapes are worked out, for reduced ground");
 }

@@ -83,6 +83,7 @@ TEST(ReducedSoil, IsKeptInAFileAndReadBack) {
   const ReducedSoil made = reduce(make_soil(in), {0, 0, 18}, folder);
   EXPECT_TRUE(is_kept(make_soil(in), {0, 0, 18}, folder));
   EXPECT_FALSE(is_kept(make_soil(in), {1, 0, 18}, folder));
+  EXPECT_FALSE(is_kept(make_soil(in), {0, 0, 18, 100}, folder));
   auto files = [&] {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
   };
@@ -116,6 +117,7 @@ TEST(ReducedSoil, WrongInputIsNamed) {
   EXPECT_THROW(reduce(soil, {-1, 0, 18}), InputError);
   EXPECT_THROW(reduce(soil, {0, -1, 18}), InputError);
   EXPECT_THROW(reduce(soil, {0, 0, 0.2}), InputError);
+  EXPECT_THROW(reduce(soil, {0, 0, 18, -1}), InputError);
 }
 
 }  // namespace
