@@ -53,8 +53,9 @@ int dispatch(int argc, char** argv) {
 void tune_libraries(char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") || std::getenv("GOMP_SPINCOUNT")) return;
   // Threads wait for each other several times a step. On a machine shared with other work, long spinning
-  // keeps the cores from whoever has work.
-  ::setenv("GOMP_SPINCOUNT", "20000", 1);
+  // keeps the cores from whoever has work: with one of two cores taken a small bed on two threads makes three
+  // times as many steps as with 20000, with both idle as many within what runs differ by.
+  ::setenv("GOMP_SPINCOUNT", "1000", 1);
   // Large pages, where the system leaves the choice to the program: a bed is tens of megabytes.
   ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
   if (const std::string kernels = trackbed::fem::blas_kernels_to_ask_for(); !kernels.empty())
