@@ -1,16 +1,15 @@
 // The program: each subcommand reads its own command line. Exits 0 when done, 1 for a run that failed, 2 for
 // wrong input.
 #include <fmt/format.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <filesystem>
 #include <string>
 #include <string_view>
-#include <system_error>
 
 #include "base/error.h"
 #include "commands.h"
@@ -60,16 +59,14 @@ void tune_libraries(char** argv) {
   ::setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1", 0);
   if (const std::string kernels = trackbed::fem::blas_kernels_to_ask_for(); !kernels.empty())
     ::setenv("OPENBLAS_CORETYPE", kernels.c_str(), 0);
-  // By its own path, so that it goes on under its own name. Returns only when it fails; then all goes on as
-  // it is.
-  std::error_code none;
-  ::execv(std::filesystem::read_symlink("/proc/self/exe", none).c_str(), argv);
+  ::execv("/proc/self/exe", argv);  // returns only when it fails; then all goes on as it is
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   tune_libraries(argv);
+  ::prctl(PR_SET_NAME, "trackbed");  // else "exe" to top and pkill: it was started by that path
   try {
     return dispatch(argc, argv);
   } catch (const trackbed::InputError& error) {

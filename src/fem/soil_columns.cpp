@@ -30,15 +30,43 @@ class Window {
         planes_(planes),
         mesh_(extrude(soil.section, 0, soil.input.element_size, planes)),
         free_(planes * soil.section_size()),
-        held_stiffness_(hold()),
         mass_(masses_of(soil, first_plane, planes)) {
-    Freedoms all(free_.nodes());
-    all.number();
-    stiffness_ = assemble_stiffness(mesh_, soil.materials, soil.input.element, all);
+    hold();
   }
 
   /// The columns of footings whose windows this is.
   std::vector<SoilColumns> columns(const std::vector<int>& footings, const Levels& krylov) const {
+    std::vector<SoilColumns> sets;
+    for (const MassBasis& basis : bases_of(footings, krylov)) {
+      const int footing = footings[sets.size()];
+      sets.push_back({basis.columns(), {}, soil_.first_plane[static_cast<std::size_t>(footing)] - first_});
+    }
+    Freedoms all(free_.nodes());  // held ones too
+    all.number();
+    const SparseMatrix stiffness = stiffness_of(all);
+#pragma omp parallel for schedule(dynamic)
+    for (std::size_t f = 0; f < sets.size(); ++f) sets[f].forces = stiffness * sets[f].values;
+    return sets;
+  }
+
+ private:
+  void hold() {
+    for (int p = 0; p < planes_; ++p) {
+      const int plane = first_ + p;
+      const bool cut = (p == 0 && plane > 0) || (p == planes_ - 1 && plane < soil_.planes - 1);
+      for (int s = 0; s < soil_.section_size(); ++s)
+        for (int axis = 0; axis < 3; ++axis)
+          if (cut || soil_.is_held(plane, s, axis)) free_.hold(p * soil_.section_size() + s, axis);
+    }
+    free_.number();
+  }
+
+  SparseMatrix stiffness_of(const Freedoms& freedoms) const {
+    return assemble_stiffness(mesh_, soil_.materials, soil_.input.element, freedoms);
+  }
+
+  /// Krylov shapes of each footing's pressures: (K + s^2 M)^-1 M of those before, s = 0 at first.
+  std::vector<MassBasis> bases_of(const std::vector<int>& footings, const Levels& krylov) const {
     const Eigen::Index shapes = soil_.shapes.cols();
     const MassBasis empty([&](const Eigen::VectorXd& v) -> Eigen::VectorXd { return mass_.cwiseProduct(v); },
                           mass_.size(), shapes*(1 + krylov.count()));
@@ -47,9 +75,13 @@ class Window {
     right.setZero();
     for (std::size_t f = 0; f < footings.size(); ++f)
       press(footings[f], right.middleCols(static_cast<Eigen::Index>(f) * shapes, shapes));
-    SparseCholesky factor(held_stiffness_, free_);
+    SparseMatrix stiffness = stiffness_of(free_);
+    SparseCholesky factor(stiffness, free_);
     for (int level = 0; level <= krylov.count(); ++level) {
-      if (level == krylov.at_rest + 1) factor.refactor(stiffened_by_mass(krylov.s));
+      if (level == krylov.at_rest + 1) {
+        stiffness.diagonal() += krylov.s * krylov.s * to_free(mass_);
+        factor.refactor(stiffness);
+      }
       const Eigen::MatrixXd solution = factor.solve(right);
       bool is_new = true;
 #pragma omp parallel for schedule(dynamic) reduction(&& : is_new)
@@ -64,33 +96,7 @@ class Window {
         throw InputError(
             fmt::format("krylov is {}; the mesh has no more shapes than {}", krylov.count(), level));
     }
-    std::vector<SoilColumns> sets;
-    for (std::size_t f = 0; f < footings.size(); ++f)
-      sets.push_back(
-          {bases[f].columns(), {}, soil_.first_plane[static_cast<std::size_t>(footings[f])] - first_});
-#pragma omp parallel for schedule(dynamic)
-    for (std::size_t f = 0; f < sets.size(); ++f) sets[f].forces = stiffness_ * sets[f].values;
-    return sets;
-  }
-
- private:
-  SparseMatrix hold() {
-    for (int p = 0; p < planes_; ++p) {
-      const int plane = first_ + p;
-      const bool cut = (p == 0 && plane > 0) || (p == planes_ - 1 && plane < soil_.planes - 1);
-      for (int s = 0; s < soil_.section_size(); ++s)
-        for (int axis = 0; axis < 3; ++axis)
-          if (cut || soil_.is_held(plane, s, axis)) free_.hold(p * soil_.section_size() + s, axis);
-    }
-    free_.number();
-    return assemble_stiffness(mesh_, soil_.materials, soil_.input.element, free_);
-  }
-
-  /// K + s^2 M of free displacements.
-  SparseMatrix stiffened_by_mass(double s) const {
-    SparseMatrix k = held_stiffness_;
-    k.diagonal() += s * s * to_free(mass_);
-    return k;
+    return bases;
   }
 
   void press(int footing, Eigen::Ref<Eigen::MatrixXd> right) const {
@@ -114,9 +120,7 @@ class Window {
   int first_, planes_;
   HexMesh mesh_;
   Freedoms free_;
-  SparseMatrix held_stiffness_;  // of free displacements
   Eigen::VectorXd mass_;
-  SparseMatrix stiffness_;  // of all displacements, held ones too
 };
 
 template <class OfNode>
