@@ -12,6 +12,12 @@ double seconds_between(Progress::Clock::time_point from, Progress::Clock::time_p
   return std::chrono::duration<double>(to - from).count();
 }
 
+/// "12.3 N"
+std::string text_of(double value, Dimension dimension) {
+  const std::string number = fmt::format("{:.3g}", value);
+  return dimension == Dimension::none ? number : fmt::format("{} {}", number, si_unit_of(dimension));
+}
+
 }  // namespace
 
 std::string duration_text(double seconds) {
@@ -27,6 +33,9 @@ std::string progress_line(const ProgressState& state, double steps_per_second, d
                                  steps_per_second, state.contacts);
   if (state.fraction_done > 0 && state.fraction_done < 1)
     line += fmt::format("  {:.0f} %, {} left", 100 * state.fraction_done, duration_text(seconds_left));
+  if (const Awaited& a = state.awaited; !a.quantity.empty())
+    line += fmt::format("  {} {}, {} wanted", a.quantity, text_of(a.now, a.dimension),
+                        text_of(a.wanted, a.dimension));
   if (state.search_share > 0.3)
     line += fmt::format("  (search {:.0f} %: a larger skin may help)", 100 * state.search_share);
   return line;
@@ -69,6 +78,7 @@ void Progress::end_stage(const ProgressState& state, Clock::time_point now) {
   if (style_ == Style::quiet) return;
   ProgressState done = state;
   done.fraction_done = 1;
+  done.awaited = {};
   print(progress_line(done, rate_, 0) + "  done in " + duration_text(seconds), true);
 }
 

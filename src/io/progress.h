@@ -5,8 +5,18 @@
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <string_view>
+
+#include "base/units.h"
 
 namespace trackbed {
+
+/// What a stage waits for, where that is not a time.
+struct Awaited {
+  std::string_view quantity;  // "unbalanced ratio"; empty: nothing, or it was not looked at yet
+  double now = 0, wanted = 0;
+  Dimension dimension = Dimension::none;
+};
 
 /// What the line tells.
 struct ProgressState {
@@ -16,6 +26,7 @@ struct ProgressState {
   std::uint64_t contacts = 0;  // in touch now
   double fraction_done = 0.0;  // of the stage, 0 .. 1; 0: not known
   double search_share = 0.0;   // of the wall time that went into the contact search, 0 .. 1
+  Awaited awaited{};
 };
 
 /// Prints the line to a terminal, over and over in place; to a pipe or file as plain lines, few of them.
@@ -51,7 +62,8 @@ class Progress {
   double fraction_at_start_ = -1.0;  // of the stage, where this run took it up; negative: not told yet
 };
 
-/// "settle  t = 0.25 s  1.2e3 steps/s  5400 contacts  40 %, 12 s left  (search 35 %: a larger skin may help)"
+/// "load  t = 0.25 s  1.2e3 steps/s  5400 contacts  40 %, 12 s left  (search 35 %: a larger skin may help)",
+/// "rest  t = 0.25 s  1.2e3 steps/s  5400 contacts  unbalanced ratio 0.0042, 0.001 wanted"
 std::string progress_line(const ProgressState& state, double steps_per_second, double seconds_left);
 
 /// "8 s", "3 min 20 s", "2 h 05 min"

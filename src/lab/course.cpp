@@ -117,6 +117,7 @@ const ProgressState& Course::progress() {
   told_.steps = static_cast<std::uint64_t>(sim_.state.step);
   told_.contacts = static_cast<std::uint64_t>(sim_.work.touching);
   told_.fraction_done = left > 0 ? done / (done + left) : 0.0;
+  told_.awaited = stages_[stage_].stage->awaited(sim_);
   told_.search_share = all > 0 ? p.search / all : 0.0;
   return told_;
 }

@@ -12,6 +12,7 @@
 #include "base/archive.h"
 #include "base/units.h"
 #include "io/csv.h"
+#include "io/progress.h"
 #include "io/schema.h"
 #include "lab/simulation.h"
 
@@ -74,6 +75,8 @@ class Stage {
   virtual const ResultTable* table() const { return nullptr; }
   /// Simulated time this stage will take from now on, for the progress line [s]; 0: not known.
   virtual double remaining(const Simulation&) const { return 0; }
+  /// What it waits for, for the progress line.
+  virtual Awaited awaited(const Simulation&) const { return {}; }
   /// All that changes between open and close, for a run that is taken up again.
   virtual void archive(Archive&) = 0;
 };

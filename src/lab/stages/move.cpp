@@ -144,6 +144,10 @@ class Move : public Stage {
       left = std::max(left, (*in_.displacement - displacement(sim)) / in_.velocity.norm());
     return left;
   }
+  Awaited awaited(const Simulation& sim) const override {
+    if (!in_.force) return {};
+    return {"force", resistance(sim), *in_.force, Dimension::force};
+  }
   void archive(Archive& a) override { a(wall_, start_, from_, peak_, peak_at_, means_, probed_, levels_); }
 
  private:

@@ -89,4 +89,9 @@ bool Parting::is_done(const Simulation& sim, double mean_overlap, double time_li
   return false;
 }
 
+Awaited Parting::awaited(double mean_overlap) const {
+  if (now_.mean == 0) return {};
+  return {"mean overlap", now_.mean, mean_overlap};
+}
+
 }  // namespace trackbed

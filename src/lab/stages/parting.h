@@ -1,6 +1,7 @@
 // Stones that were put down overlapping part gently.
 #pragma once
 
+#include "io/progress.h"
 #include "lab/simulation.h"
 
 namespace trackbed {
@@ -33,6 +34,7 @@ class Parting {
 
   double time(const Simulation& sim) const { return sim.state.time - start_; }  ///< since it began [s]
   const Overlaps& overlaps() const { return now_; }                             ///< when last looked at
+  Awaited awaited(double mean_overlap) const;                                   ///< for the progress line
   template <class A>
   void archive(A& a) {
     a(start_, smallest_, overlap_limit_, now_);

@@ -56,6 +56,7 @@ class Repeat : public Stage {
     const double done = cycle_ + static_cast<double>(at_) / static_cast<double>(in_.stages.size());
     return done > 0 ? (sim.state.time - start_) / done * (in_.times - done) : 0.0;
   }
+  Awaited awaited(const Simulation& sim) const override { return stage_->awaited(sim); }
 
   /// What its stages found the last time; stones added and removed, of all times.
   std::vector<Result> close(Simulation& sim) override {

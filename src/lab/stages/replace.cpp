@@ -103,6 +103,7 @@ class Replace : public Stage {
             {"mean_overlap", parting_.overlaps().mean, Dimension::none},
             {"largest_overlap", parting_.overlaps().largest, Dimension::none}};
   }
+  Awaited awaited(const Simulation&) const override { return parting_.awaited(in_.mean_overlap); }
   void archive(Archive& a) override { a(parting_, replaced_, left_, mass_share_); }
 
  private:

@@ -84,6 +84,7 @@ class Scatter : public Stage {
       results.push_back(r);
     return results;
   }
+  Awaited awaited(const Simulation&) const override { return parting_.awaited(in_.mean_overlap); }
   void archive(Archive& a) override { a(sizes_, parting_); }
 
  private:

@@ -75,6 +75,13 @@ TEST(Progress, HintWhenTheSearchIsDear) {
             "settle  t = 0.25 s  1.23e+03 steps/s  7 contacts  (search 35 %: a larger skin may help)");
 }
 
+TEST(Progress, TellsWhatAStageWaitsFor) {
+  EXPECT_EQ(progress_line({"rest", 0.25, 10, 7, 0, 0, {"unbalanced ratio", 0.00421, 0.001}}, 100, 3),
+            "rest  t = 0.25 s  100 steps/s  7 contacts  unbalanced ratio 0.00421, 0.001 wanted");
+  EXPECT_EQ(progress_line({"down", 0.25, 10, 7, 0, 0, {"force", 12.34, 500, Dimension::force}}, 100, 3),
+            "down  t = 0.25 s  100 steps/s  7 contacts  force 12.3 N, 500 N wanted");
+}
+
 TEST(Progress, Durations) {
   EXPECT_EQ(duration_text(8.4), "8 s");
   EXPECT_EQ(duration_text(200), "3 min 20 s");
