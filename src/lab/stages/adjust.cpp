@@ -68,10 +68,10 @@ class Adjust : public Stage {
     if (sim.state.step < next_) return;
     next_ = sim.state.step + in_.steps;
     const BedStress now = bed_stress(sim);
-    stress_ = now.mean;
     const double excess = now.mean - target_;
     // Stones that lie too loose come nearer by themselves: only a stress of the user's own makes them grow.
     reached_ = (in_.stress ? std::abs(excess) : excess) <= tolerance() * target_;
+    if (!reached_) awaited_ = {"mean stress", now.mean, target_, Dimension::stress};
     if (reached_ || now.stiffness == 0) return;
     if (round_ == in_.rounds) fail(now, fmt::format("after {} changes of the sizes", round_));
     change_sizes(sim, now);
@@ -80,8 +80,9 @@ class Adjust : public Stage {
   bool finished(const Simulation& sim) override {
     constexpr int look_every = 50;  // it looks at all contacts
     if (!reached_ || (sim.state.step - start_) % look_every != 0) return false;
-    ratio_ = unbalanced_ratio(sim.model, sim.state);
-    return ratio_ < in_.unbalanced_ratio;
+    const double ratio = unbalanced_ratio(sim.model, sim.state);
+    awaited_ = {"unbalanced ratio", ratio, in_.unbalanced_ratio};
+    return ratio < in_.unbalanced_ratio;
   }
 
   std::vector<Result> close(Simulation& sim) override {
@@ -93,10 +94,7 @@ class Adjust : public Stage {
             {"porosity", porosity(sim, solid_volume(sim)), Dimension::none},
             {"largest_overlap", largest_overlap(sim), Dimension::none}};
   }
-  Awaited awaited(const Simulation&) const override {
-    if (!reached_) return {"mean stress", stress_, target_, Dimension::stress};
-    return {"unbalanced ratio", ratio_, in_.unbalanced_ratio};
-  }
+  Awaited awaited(const Simulation&) const override { return awaited_; }
   void archive(Archive& a) override { a(target_, factor_, round_, start_, next_, reached_); }
 
  private:
@@ -135,7 +133,7 @@ class Adjust : public Stage {
   int round_ = 0;
   std::int64_t start_ = 0, next_ = 0;
   bool reached_ = false;
-  double stress_ = 0, ratio_ = 1;  // when last looked at, for the progress line
+  Awaited awaited_;  // as last looked at
 };
 
 std::unique_ptr<Stage> AdjustInput::make(const CaseInput&) const {

@@ -50,13 +50,14 @@ class Settle : public Stage {
     if (sim.state.step % look_every != 0 || sim.state.clumps.size() == 0) return sim.state.clumps.size() == 0;
     // Stones that pass through their rest position are for a moment without acceleration, but not at rest:
     // the ratio must stay low.
-    ratio_ = unbalanced_ratio(sim.model, sim.state);
-    calm_ = ratio_ < in_.unbalanced_ratio ? calm_ + 1 : 0;
+    const double ratio = unbalanced_ratio(sim.model, sim.state);
+    awaited_ = {"unbalanced ratio", ratio, in_.unbalanced_ratio};
+    calm_ = ratio < in_.unbalanced_ratio ? calm_ + 1 : 0;
     if (calm_ >= looks_needed) return true;
     if (sim.state.time - start_ > in_.time_limit)
       throw RunError(
           fmt::format("not at rest after {:.3g} s: the unbalanced ratio is {:.2e}, {:.2e} was asked for",
-                      in_.time_limit, ratio_, in_.unbalanced_ratio));
+                      in_.time_limit, ratio, in_.unbalanced_ratio));
     return false;
   }
 
@@ -64,10 +65,7 @@ class Settle : public Stage {
     const double ratio = unbalanced_ratio(sim.model, sim.state);
     return {{"time", sim.state.time - start_, Dimension::time}, {"unbalanced_ratio", ratio, Dimension::none}};
   }
-  Awaited awaited(const Simulation&) const override {
-    if (ratio_ < 0) return {};
-    return {"unbalanced ratio", ratio_, in_.unbalanced_ratio};
-  }
+  Awaited awaited(const Simulation&) const override { return awaited_; }
   void archive(Archive& a) override { a(start_, calm_); }
 
  private:
@@ -75,7 +73,7 @@ class Settle : public Stage {
   SettleInput in_;
   double start_ = 0;
   int calm_ = 0;
-  double ratio_ = -1;  // when last looked at; negative: not yet
+  Awaited awaited_;  // as last looked at
 };
 
 std::unique_ptr<Stage> SettleInput::make(const CaseInput&) const {
