@@ -8,6 +8,7 @@
 #include "commands.h"
 #include "lab/coupling.h"
 #include "lab/run.h"
+#include "lab/study/foreseen.h"
 #include "lab/study/judge.h"
 #include "lab/study/study.h"
 #include "lab/track/track_case.h"
@@ -65,6 +66,7 @@ void check_study(const Document& document) {
   document.read(study);
   const std::vector<Condition> conditions = conditions_of(document, study);
   const std::vector<Member> members = members_of(study, conditions);
+  check_measures(document, study, {study, conditions});
   fmt::print("{}\n  case          {}\n", study.title, study.base.string());
   for (const Condition& condition : conditions) fmt::print("  condition     {}\n", condition.name);
   fmt::print("  runs          {}, of {} seeds from {}\n", members.size(), study.repeats, study.first_seed);

@@ -20,6 +20,7 @@
 #include "io/files.h"
 #include "io/progress.h"
 #include "lab/study/fits.h"
+#include "lab/study/foreseen.h"
 #include "lab/study/results.h"
 #include "local_site.h"
 #include "slurm_site.h"
@@ -94,6 +95,7 @@ class StudyRun {
       : o_(options), study_(std::move(study)), conditions_(conditions_of(document, study_)), site_(site) {
     if (!o_.until.empty()) goal_ = goal_of(o_.until);
     for (Member& member : members_of(study_, conditions_)) add(std::move(member));
+    check_measures(document);
   }
 
   /// Runs what is not done; returns whether all members succeeded.
@@ -112,6 +114,15 @@ class StudyRun {
   }
 
  private:
+  void check_measures(const Document& document) const {
+    const ForeseenMeasures foreseen(study_, conditions_);
+    trackbed::check_measures(document, study_, foreseen);
+    if (!goal_) return;
+    if (const auto hint = foreseen.hint_for(goal_->measure))
+      throw InputError(fmt::format("--repeat-until: no run leaves a measure called {}\n  hint: {}",
+                                   goal_->measure, *hint));
+  }
+
   fs::path folder_of(const Member& member) const { return fs::absolute(o_.out) / "members" / member.name; }
 
   Job job_of(const Member& member) const {

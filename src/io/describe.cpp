@@ -47,6 +47,10 @@ class Describer : public Fields {
   void check(bool, std::string_view, std::string_view, std::string_view) override {}
 
  protected:
+  void visit_result(std::string_view name, Dimension dimension, std::string_view meaning, bool) override {
+    page_.results.push_back({std::string(name), std::string(si_unit_of(dimension)), std::string(meaning)});
+  }
+
   std::optional<Value> visit(const Field& field, const std::optional<Value>& current) override {
     std::string fallback = current ? to_text(*current, field.dimension) : "-";
     if (field.key.required) fallback = "required";
@@ -125,6 +129,15 @@ std::string markdown_table(const Page& page) {
   return text;
 }
 
+/// Nothing for a page that leaves none.
+std::string markdown_results(const Page& page) {
+  if (page.results.empty()) return {};
+  std::string text = "\n| result | unit | meaning |\n|---|---|---|\n";
+  for (const Page::Result& r : page.results)
+    text += fmt::format("| `{}` | {} | {} |\n", r.name, r.unit, markdown_cell(r.meaning));
+  return text;
+}
+
 }  // namespace
 
 Description describe_with(std::string name, std::string meaning,
@@ -173,6 +186,12 @@ std::string to_text(const Page& page) {
     text += fmt::format("  {:{}}  {}\n", row.key, key_width, fmt::join(facts, "; "));
     text += fmt::format("  {:{}}  {}\n", "", key_width, row.meaning);
   }
+  if (page.results.empty()) return text;
+  text += "results:\n";
+  std::size_t name_width = 0;
+  for (const Page::Result& r : page.results) name_width = std::max(name_width, r.name.size());
+  for (const Page::Result& r : page.results)
+    text += fmt::format("  {:{}}  [{}]  {}\n", r.name, name_width, r.unit, r.meaning);
   return text;
 }
 
@@ -194,7 +213,8 @@ std::string to_markdown(const Description& description) {
   for (const auto& [family, pages] : description.families) {
     text += fmt::format("\n## Every {}\n", family);
     for (const Page& page : pages)
-      text += fmt::format("\n### {}\n\n{}\n\n{}", page.name, page.meaning, markdown_table(page));
+      text += fmt::format("\n### {}\n\n{}\n\n{}{}", page.name, page.meaning, markdown_table(page),
+                          markdown_results(page));
   }
   return text;
 }

@@ -18,9 +18,13 @@ struct Page {
     std::string range;
     std::string meaning;
   };
+  struct Result {
+    std::string name, unit, meaning;
+  };
   std::string name;     // "settle"
   std::string meaning;  //
   std::vector<Row> rows;
+  std::vector<Result> results = {};  // what the run leaves because of it
 };
 
 /// The pages of one input struct: itself, and every kind of each registry it leads to.

@@ -247,6 +247,12 @@ class Fields {
   /// low", "low is 3 N here"). Reported at `key`; kept quiet when the table has other errors.
   virtual void check(bool ok, std::string_view key, std::string_view problem, std::string_view hint) = 0;
 
+  /// A number that the run leaves because of this table. NUMBER in its name stands for one. `does`: whether
+  /// it leaves it with the values at hand.
+  void gives(std::string_view name, Dimension dimension, std::string_view meaning, bool does = true) {
+    visit_result(name, dimension, meaning, does);
+  }
+
   /// Where this table stands in the file ("stages.2"), for errors found later: Document::fail. Empty when
   /// nothing is read.
   virtual std::string here() const { return {}; }
@@ -255,6 +261,8 @@ class Fields {
   /// Returns the value found in the file; nothing when the default stands.
   virtual std::optional<Value> visit(const Field& field, const std::optional<Value>& current) = 0;
   virtual void visit(const Field& field, Elements& elements) = 0;
+  virtual void visit_result(std::string_view /*name*/, Dimension, std::string_view /*meaning*/,
+                            bool /*does*/) {}
 
  private:
   template <class V, class T>

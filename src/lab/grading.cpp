@@ -58,4 +58,8 @@ std::vector<Result> passing_results(const GradingInput& grading, const Space& sp
   return results;
 }
 
+void declare_passing(Fields& f) {
+  f.gives("passing_NUMBER_mm", Dimension::none, "share by volume that passes each sieve of the grading");
+}
+
 }  // namespace trackbed

@@ -28,5 +28,7 @@ std::vector<double> passing(const GradingInput& grading, const Space& space,
 /// The same as results of a stage, one a sieve, called by the sieve of the file, before its scale.
 std::vector<Result> passing_results(const GradingInput& grading, const Space& space,
                                     const std::vector<double>& sizes);
+/// Says that a stage gives them.
+void declare_passing(Fields& f);
 
 }  // namespace trackbed

@@ -1,7 +1,8 @@
 // A stage of an experiment: it sets targets and says when it is done; the engine moves the stones.
 //
-// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, a child
-// of Stage and its row; and the row's name in stages/table.cpp.
+// To add one: src/lab/stages/<name>.cpp with an input struct (a child of StageInput), its `declare`, which
+// also says what the stage finds (Fields::gives), a child of Stage and its row; and the row's name in
+// stages/table.cpp.
 #pragma once
 
 #include <memory>
@@ -83,6 +84,14 @@ class Stage {
 
 /// All stages that a case may name.
 const Kinds<StageInput>& stage_kinds();
+
+/// What a stage will find, as its `declare` says: a result's name, in which NUMBER stands for one, and
+/// dimension.
+struct Foreseen {
+  std::string name;
+  Dimension dimension = Dimension::none;
+};
+std::vector<Foreseen> foreseen_results(const OneOf<StageInput>& stage);
 
 /// Declares a list of stages under the key `stages`; each has its kind for a name where it has no other.
 void declare_stages(Fields& f, std::vector<OneOf<StageInput>>& stages, std::string_view meaning);

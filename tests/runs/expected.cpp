@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "lab/study/foreseen.h"
 #include "lab/track/track_run.h"
 
 namespace trackbed {
@@ -33,6 +34,11 @@ const StageSummary& stage_of(const Summary& summary, const std::string& name) {
   return *found;
 }
 
+void expect_foreseen(const CaseInput& experiment, const Summary& summary) {
+  const ForeseenMeasures foreseen(experiment);
+  for (const Result& r : summary.measures) EXPECT_FALSE(foreseen.hint_for(r.name)) << r.name;
+}
+
 namespace {
 
 Summary run_one(const Document& document, const RunOptions& options) {
@@ -43,7 +49,9 @@ Summary run_one(const Document& document, const RunOptions& options) {
   }
   CaseInput experiment;
   document.read(experiment);
-  return run(document, experiment, options);
+  Summary summary = run(document, experiment, options);
+  expect_foreseen(experiment, summary);
+  return summary;
 }
 
 }  // namespace

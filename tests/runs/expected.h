@@ -30,6 +30,9 @@ Summary run_short_form(const std::string& name, const std::filesystem::path& out
 /// Runs the short form of cases/NAME into the folder and compares every measure.
 Summary run_and_compare(const std::string& name, const std::filesystem::path& out);
 
+/// That every measure which a run has left was foreseen from its case.
+void expect_foreseen(const CaseInput& experiment, const Summary& summary);
+
 /// Of a measure at the end of a stage, or the result of a stage; NaN when there is none.
 double value_of(const std::vector<Result>& results, const std::string& name);
 const StageSummary& stage_of(const Summary& summary, const std::string& name);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/rng.h"
+#include "expected.h"
 #include "io/files.h"
 #include "lab/checkpoint.h"
 #include "lab/run.h"
@@ -163,7 +164,9 @@ Summary run_case(const char* text, const fs::path& out, int threads, const std::
   options.quiet = true;
   options.resume = resume;
   options.stop = stop;
-  return run(document, experiment, options);
+  Summary summary = run(document, experiment, options);
+  expect_foreseen(experiment, summary);
+  return summary;
 }
 
 /// Every file below a folder but the summary, which tells times of the clock.

@@ -45,6 +45,12 @@ void declare(Fields& f, AdjustInput& in) {
   declare_scaled_share(f, in.scaled_share);
   f.number("friction", in.friction, {.at_least = 0, .at_most = 10},
            "upper bound on the friction of all contacts during this stage");
+  f.gives("factor", Dimension::none, "on all sizes in the end");
+  f.gives("rounds", Dimension::none, "changes of the sizes");
+  f.gives("stress", Dimension::stress, "mean stress of the bed in the end");
+  f.gives("stress_wanted", Dimension::stress, "what it was adjusted to");
+  f.gives("porosity", Dimension::none, "as the measure of this name");
+  f.gives("largest_overlap", Dimension::none, "as the measure of this name");
 }
 
 /// Shrinks or grows all stones, with a scaled time step, about their centres until the mean stress is that

@@ -40,6 +40,9 @@ void declare(Fields& f, FillInput& in) {
            "share of the column above the floor that the falling stones take up");
   f.quantity("clearance", in.clearance, Dimension::length, {.above = 0}, "left free between stones");
   f.text("set", in.set, "a set of stones.sets to take the stones from; by default those of [stones]");
+  f.gives("added", Dimension::none, "stones");
+  f.gives("column_height", Dimension::length, "of the column that they are placed in");
+  declare_passing(f);
 }
 
 /// Places stones of the given sizes at random, none touching another or a wall, in a column over the

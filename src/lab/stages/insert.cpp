@@ -39,6 +39,9 @@ void declare(Fields& f, InsertInput& in) {
   f.check(!in.bottom || in.embedment == 0, "bottom", "bottom and embedment say the same thing twice",
           "give one of them");
   f.check(in.at.empty() || in.at.size() == 2, "at", "two lengths are needed", "give x and y");
+  f.gives("removed", Dimension::none, "stones in its way");
+  f.gives("bed_surface", Dimension::length, "height of the bed around it");
+  f.gives("bottom", Dimension::length, "height of its lowest point");
 }
 
 class Insert : public Stage {

@@ -10,6 +10,14 @@
 #include "lab/track/sleeper_peaks.h"
 
 namespace trackbed {
+namespace {
+
+std::string name_of_level(double force) {
+  return fmt::format("distance_at_{:g}_kN", 1e-3 * force);
+}
+
+}  // namespace
+
 void declare(Fields& f, LevelsInput& in) {
   f.quantities(
       "levels", in.levels, Dimension::force, {.above = 0},
@@ -28,6 +36,13 @@ void declare(Fields& f, LevelsInput& in) {
           "give levels_from too, or leave them out");
   f.check(in.measures.empty() || in.any(), "measures", "there are no levels at which to measure",
           "give levels, or leave them out");
+}
+
+void declare_results(Fields& f, const LevelsInput& in) {
+  f.gives("distance_at_NUMBER_kN", Dimension::length, "with levels: at each that was reached", false);
+  for (const double force : in.levels) f.gives(name_of_level(force), Dimension::length, "at this level");
+  f.gives("distance_at_sleeper_NUMBER", Dimension::length, "with levels_from: at each that was reached",
+          in.from_track.has_value());
 }
 
 void LevelsInput::check(const Document& document, const Simulation& sim, const std::string& here) const {
@@ -74,7 +89,7 @@ std::vector<Result> Levels::results() const {
   const auto distance = std::ranges::find(table_.columns, "distance", &Column::name);
   for (std::size_t k = 0; k < crossed(); ++k)
     results.push_back({of_sleepers_ ? fmt::format("distance_at_sleeper_{:+d}", levels_[k].sleeper)
-                                    : fmt::format("distance_at_{:g}_kN", 1e-3 * levels_[k].force),
+                                    : name_of_level(levels_[k].force),
                        table_.rows[k].at(static_cast<std::size_t>(distance - table_.columns.begin())),
                        Dimension::length});
   return results;

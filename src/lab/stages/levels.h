@@ -24,6 +24,8 @@ struct LevelsInput {
 };
 
 void declare(Fields& f, LevelsInput& in);
+/// What the levels give.
+void declare_results(Fields& f, const LevelsInput& in);
 
 /// Notes the first crossing of each level.
 class Levels {

@@ -62,6 +62,11 @@ void declare(Fields& f, LoadInput& in) {
           "a table needs as many times as forces, two at least", "give times and forces of equal length");
   f.check(std::is_sorted(in.times.begin(), in.times.end()), "times", "times must ascend",
           "sort the table by time");
+  f.gives("displacement", Dimension::length, "of the body in the direction of the force");
+  f.gives("displacement_last_half_cycle", Dimension::length, "of a wave: since half a cycle before the end",
+          in.is_periodic());
+  f.gives("energy_in", Dimension::energy, "work of force, walls and gravity meanwhile");
+  f.gives("energy_error", Dimension::none, "what the balance of energies is out by, over energy_in");
 }
 
 void LoadInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {

@@ -30,6 +30,10 @@ struct MoveInput : StageInput {
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
+std::string name_of_probe(double distance) {
+  return fmt::format("force_at_{:g}_mm", 1e3 * distance);
+}
+
 void declare(Fields& f, MoveInput& in) {
   declare_common(f, in);
   f.text(required("wall"), in.wall, "wall that moves, or body, along axes in which it is not free");
@@ -54,6 +58,17 @@ void declare(Fields& f, MoveInput& in) {
           "give a velocity, or use the stage hold");
   f.check(in.says_when() || in.levels.any(), "duration", "nothing says when the motion ends",
           "give distance, displacement, duration, force or levels");
+  f.gives("distance", Dimension::length, "that it has gone");
+  f.gives("force", Dimension::force, "against the motion, in the end");
+  f.gives("force_peak", Dimension::force, "the largest on the way");
+  f.gives("distance_at_peak", Dimension::length, "where that was");
+  const bool has_means = in.mean_over.has_value();
+  f.gives("mean_force_peak", Dimension::force, "with mean_over: the largest of the means", has_means);
+  f.gives("distance_at_mean_peak", Dimension::length, "with mean_over: the middle of that part of the way",
+          has_means);
+  f.gives("force_at_NUMBER_mm", Dimension::force, "with probes: at each of them", false);
+  for (const double probe : in.probes) f.gives(name_of_probe(probe), Dimension::force, "at this probe");
+  declare_results(f, in.levels);
 }
 
 void MoveInput::check(const Document& document, const CaseInput&, const Simulation& sim) const {
@@ -131,7 +146,7 @@ class Move : public Stage {
       results.push_back({"distance_at_mean_peak", means_.at(), Dimension::length});
     }
     for (std::size_t k = 0; k < probed_.size(); ++k)
-      results.push_back({fmt::format("force_at_{:g}_mm", 1e3 * in_.probes[k]), probed_[k], Dimension::force});
+      results.push_back({name_of_probe(in_.probes[k]), probed_[k], Dimension::force});
     for (const Result& r : levels_.results()) results.push_back(r);
     return results;
   }

@@ -23,6 +23,7 @@ void declare(Fields& f, RemoveInput& in) {
   declare_selection(f, in.where, "are taken away", "none");
   f.check(!in.walls.empty() || !in.where.is_all(), "walls", "there is nothing to take away",
           "name walls, or a region");
+  f.gives("removed", Dimension::none, "stones");
 }
 
 class Remove : public Stage {

@@ -32,6 +32,16 @@ void declare(Fields& f, RepeatInput& in) {
   f.texts("measures", in.measures, "further columns of its table: measured at the end of each of its stages");
   declare_stages(f, in.stages, "what happens each time, in this order");
   f.check(!in.stages.empty(), "stages", "there is no stage to repeat", "add [[stages.stages]] with a kind");
+  f.gives("times", Dimension::none, "how often its stages ran");
+  f.gives("added", Dimension::none, "stones, all times together; where there are any");
+  f.gives("removed", Dimension::none, "stones, all times together; where there are any");
+  f.gives("STAGE.RESULT", Dimension::none, "what its stages gave the last time, in its own unit", false);
+  for (const OneOf<StageInput>& stage : in.stages) {
+    const std::string& name = stage.input->name;
+    for (const Foreseen& r : foreseen_results(stage)) f.gives(name + "." + r.name, r.dimension, "its result");
+    for (const std::string& measure : in.measures) f.gives(name + "." + measure, Dimension::none, "measured");
+    f.gives(name + ".time", Dimension::time, "when it ended");
+  }
 }
 
 class Repeat : public Stage {

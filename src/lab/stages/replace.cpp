@@ -47,6 +47,13 @@ void declare(Fields& f, ReplaceInput& in) {
       "themselves through a wall of triangles");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
+  f.gives("replaced", Dimension::none, "stones");
+  f.gives("left", Dimension::none, "stones that had no room to be replaced");
+  f.gives("share", Dimension::none, "replaced of all stones, by number");
+  f.gives("mass_share", Dimension::none, "of the set, by mass of the stones that could have been replaced");
+  f.gives("time", Dimension::time, "that parting took");
+  f.gives("mean_overlap", Dimension::none, "of touching stones, over the smaller one's radius");
+  f.gives("largest_overlap", Dimension::none, "the same, the largest");
 }
 
 /// Puts stones of another set in the place of those there: equal volume, same centre, any orientation (PRRA,

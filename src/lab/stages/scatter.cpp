@@ -55,6 +55,10 @@ void declare(Fields& f, ScatterInput& in) {
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
   declare_scaled_share(f, in.scaled_share);
+  f.gives("added", Dimension::none, "stones");
+  f.gives("time", Dimension::time, "that parting took");
+  f.gives("mean_overlap", Dimension::none, "of touching stones, over the smaller one's radius");
+  declare_passing(f);
 }
 
 /// Places stones anywhere in the container, overlapping each other but no wall, and lets them part: without

@@ -28,6 +28,8 @@ void declare(Fields& f, ServoInput& in) {
   f.vector("direction", in.direction, Dimension::none, {}, "in which it presses");
   f.quantity(required("duration"), in.duration, Dimension::time, {.above = 0}, "how long");
   f.check(in.direction.norm() > 0, "direction", "the direction is zero", "give a vector such as [0, 0, -1]");
+  f.gives("force", Dimension::force, "that the stones bear in the end");
+  f.gives("distance", Dimension::length, "that the wall has gone");
 }
 
 class Servo : public Stage {

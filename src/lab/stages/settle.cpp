@@ -33,6 +33,8 @@ void declare(Fields& f, SettleInput& in) {
   f.quantity("gravity", in.gravity, Dimension::acceleration, {.above = 0},
              "raised gravity during this stage, in its usual direction: stones fall and pack faster");
   declare(f, in.conditions);
+  f.gives("time", Dimension::time, "until rest");
+  f.gives("unbalanced_ratio", Dimension::none, "in the end");
 }
 
 class Settle : public Stage {

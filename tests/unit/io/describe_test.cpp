@@ -25,6 +25,21 @@ TEST(Describe, OneKind) {
             "                    fail after this time\n");
 }
 
+// With what it leaves only for some values, too.
+TEST(Describe, WhatAKindLeaves) {
+  const std::string text = to_text(sample_description().find("load"));
+  EXPECT_TRUE(
+      text.ends_with("results:\n"
+                     "  peak               [N]  the largest force\n"
+                     "  force_at_NUMBER_s  [N]  force at a time that nobody asks for\n"))
+      << text;
+  const std::string page = to_markdown(sample_description());
+  EXPECT_NE(page.find("| `force_max` | force [N] | `\"1000 N\"` | above 0 N | highest force |\n\n"
+                      "| result | unit | meaning |\n|---|---|---|\n| `peak` | N | the largest force |\n"),
+            std::string::npos)
+      << page;
+}
+
 TEST(Describe, OneSection) {
   EXPECT_EQ(to_text(sample_description().find("contact")),
             "contact\n"

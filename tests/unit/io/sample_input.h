@@ -56,6 +56,8 @@ inline void declare(Fields& f, Load& in) {
   f.quantity("force_max", in.force_max, Dimension::force, {.above = 0}, "highest force");
   f.check(in.force_min < in.force_max, "force_max", "force_max must be above force_min",
           "force_min is " + to_text(in.force_min, Dimension::force));
+  f.gives("peak", Dimension::force, "the largest force");
+  f.gives("force_at_NUMBER_s", Dimension::force, "force at a time that nobody asks for", false);
 }
 inline void declare(Fields& f, Cycle& in) {
   f.text("name", in.name, "name of the stage");

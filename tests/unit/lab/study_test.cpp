@@ -10,6 +10,7 @@
 #include "base/rng.h"
 #include "io/files.h"
 #include "lab/study/fits.h"
+#include "lab/study/foreseen.h"
 #include "lab/study/results.h"
 #include "lab/study/statistics.h"
 #include "scenes/temporary_folder.h"
@@ -176,6 +177,48 @@ TEST_F(Study, WrongFilesAreToldByTheirPlace) {
   const std::string unknown = message("[[sweep]]\nkey = \"stones.ration\"\nvalues = [\"0.3\"]\n");
   EXPECT_NE(unknown.find("the condition ration 0.3: "), std::string::npos) << unknown;
   EXPECT_NE(unknown.find("ratio"), std::string::npos) << unknown;
+}
+
+/// What is said of a study's measures before anything runs; nothing when all is well.
+std::string told_of_measures(const Document& document) {
+  StudyInput study;
+  document.read(study);
+  try {
+    check_measures(document, study, {study, conditions_of(document, study)});
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST_F(Study, AMeasureThatNoRunLeavesIsRefusedBeforeTheFirst) {
+  EXPECT_EQ(told_of_measures(document("measures = [\"porosity\", \"fill.added\", \"fill.stones\", "
+                                      "\"fill.passing_31.5_mm\", \"box.left.force_x\"]\n")),
+            "");
+  const std::string told = told_of_measures(document("measures = [\"porosity\", \"fill.aded\"]\n"));
+  EXPECT_NE(told.find("study.toml:3:1: error: no run leaves a measure called fill.aded"), std::string::npos)
+      << told;
+  EXPECT_NE(told.find("did you mean fill.added?"), std::string::npos) << told;
+  EXPECT_NE(told_of_measures(document("measures = [\"fill.passing_two_mm\"]\n")), "");
+}
+
+// Each run may leave what the others do not.
+TEST_F(Study, MeasuresAreThoseOfAnyCondition) {
+  const std::string conditions =
+      "[[conditions]]\nname = \"small\"\n[[conditions]]\nname = \"binned\"\nset = "
+      "[\"record.force_bins=[\\\"7 N\\\"]\"]\n";
+  EXPECT_EQ(told_of_measures(
+                document("measures = [\"contacts_below_7_N\", \"contacts_below_100_N\"]\n" + conditions)),
+            "");
+  EXPECT_NE(told_of_measures(document("measures = [\"contacts_below_8_N\"]\n" + conditions)), "");
+}
+
+TEST_F(Study, ALineThroughAMeasureThatNoRunLeavesIsRefused) {
+  const std::string told =
+      told_of_measures(document("[[sweep]]\nkey = \"stones.shapes\"\nvalues = [\"2\", \"3\"]\n"
+                                "[[fits]]\nname = \"line\"\nx = \"stones.shapes\"\ny = \"porosty\"\n"));
+  EXPECT_NE(told.find("study.toml:9:5: error: no run leaves a measure called porosty"), std::string::npos)
+      << told;
 }
 
 /// Leaves a summary as a run does.
