@@ -1,6 +1,8 @@
 #include "dem/inspect.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -56,41 +58,60 @@ double kinetic_energy(const Model& model, const Wall& properties, const WallStat
   return 0.5 * (body.mass * v.squaredNorm() + body.inertia.dot(w.cwiseAbs2()));
 }
 
+/// Of a stone by itself, its contacts left out.
+std::optional<std::string> what_is_wrong(const Model& model, const Clumps& c, const Workspace& work,
+                                         Index i) {
+  const Limits& limits = model.limits;
+  if (!c.position[i].allFinite() || !c.velocity[i].allFinite() || !c.angular_momentum[i].allFinite() ||
+      !c.force[i].allFinite() || !c.moment[i].allFinite())
+    return "a position, velocity or force is not a number: the run has blown up";
+  const double speed = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
+  if (speed > limits.speed)
+    return fmt::format("moves at {:.4g} m/s, above the limit of {:.4g} m/s: the run has blown up", speed,
+                       limits.speed);
+  if (!model.domain.isEmpty() && model.domain.exteriorDistance(c.position[i]) > limits.outside)
+    return "has left the container";
+  return std::nullopt;
+}
+
+double smallest_pebble(const Model& model, const Clumps& c, Index i) {
+  return c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius;
+}
+
 }  // namespace
 
 void inspect(const Model& model, const State& state, const Workspace& work) {
   const Clumps& c = state.clumps;
   const Limits& limits = model.limits;
-  for (Index i = 0; i < c.id.size(); ++i) {
-    if (!c.position[i].allFinite() || !c.velocity[i].allFinite() || !c.angular_momentum[i].allFinite() ||
-        !c.force[i].allFinite() || !c.moment[i].allFinite())
-      fail(state, i, "a position, velocity or force is not a number: the run has blown up");
-    const double speed = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
-    if (speed > limits.speed)
-      fail(state, i,
-           fmt::format("moves at {:.4g} m/s, above the limit of {:.4g} m/s: the run has blown up", speed,
-                       limits.speed));
-    if (!model.domain.isEmpty() && model.domain.exteriorDistance(c.position[i]) > limits.outside)
-      fail(state, i, "has left the container");
-  }
+  int first = c.size();  // that something is wrong with
+#pragma omp parallel for schedule(static) reduction(min : first) if (c.size() > 1000)
+  for (int i = 0; i < c.size(); ++i)
+    if (what_is_wrong(model, c, work, static_cast<Index>(i))) first = std::min(first, i);
+  if (first < c.size())
+    fail(state, static_cast<Index>(first), *what_is_wrong(model, c, work, static_cast<Index>(first)));
   for (const WallState& wall : state.walls)
     if (!wall.pose.position.allFinite() || !wall.velocity.allFinite())
       throw RunError(fmt::format("step {}, t = {:.6g} s: the motion of a wall or body is not a number",
                                  state.step, state.time));
   visit_touching(model, state, [&](const Touching& t) {
-    double radius = equal_volume_radius(model, c, static_cast<Index>(t.clump_1));
-    if (t.clump_2 >= 0)
-      radius = std::min(radius, equal_volume_radius(model, c, static_cast<Index>(t.clump_2)));
+    const Index first_stone = static_cast<Index>(t.clump_1);
+    // No pebble is larger than its stone: hardly a contact needs the roots of volumes.
+    double least = smallest_pebble(model, c, first_stone);
+    if (t.clump_2 >= 0) least = std::min(least, smallest_pebble(model, c, static_cast<Index>(t.clump_2)));
     if (t.clump_2 < 0 && t.overlap > limits.through * t.radius &&
         !model.walls[static_cast<Index>(t.wall)].shape.is_plane)
-      fail(state, static_cast<Index>(t.clump_1),
+      fail(state, first_stone,
            fmt::format("a pebble of {:.3g} mm radius is about to be pushed through wall {}", 1e3 * t.radius,
                        model.walls[static_cast<Index>(t.wall)].shape.name));
+    if (t.overlap <= limits.overlap * least) return;
+    double radius = equal_volume_radius(model, c, first_stone);
+    if (t.clump_2 >= 0)
+      radius = std::min(radius, equal_volume_radius(model, c, static_cast<Index>(t.clump_2)));
     if (t.overlap <= limits.overlap * radius) return;
     const std::string other =
         t.clump_2 >= 0 ? fmt::format("stone {}", c.id[static_cast<Index>(t.clump_2)])
                        : fmt::format("wall {}", model.walls[static_cast<Index>(t.wall)].shape.name);
-    fail(state, static_cast<Index>(t.clump_1),
+    fail(state, first_stone,
          fmt::format("overlaps {} by {:.3g} mm, {:.0f} % of its radius (limit {:.0f} %)", other,
                      1e3 * t.overlap, 100 * t.overlap / radius, 100 * limits.overlap));
   });

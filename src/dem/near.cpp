@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <utility>
 
 namespace trackbed {
 namespace {
@@ -88,11 +89,12 @@ bool is_near(const WallShape& shape, const Vec3& centre, double radius) {
   return any_near_facet(shape, centre, radius, [](int, double) { return true; });
 }
 
-/// Appends the numbers of the stones after i that are near it, grid by grid.
+/// Appends the pairs of stone i with those after it that are near it, ascending.
 void append_near(int i, const std::vector<Grid>& grids, const Clumps& clumps, const Workspace& work,
-                 std::vector<int>& others) {
+                 Pairs& pairs) {
   const Vec3& x = clumps.position[static_cast<Index>(i)];
   const double bound = work.bound[static_cast<Index>(i)];
+  const auto before = static_cast<std::ptrdiff_t>(pairs.size());
   for (const Grid& grid : grids) {
     const Vec3 reach = Vec3::Constant(bound + grid.largest + work.margin);
     const auto low = grid.place(x - reach), high = grid.place(x + reach);
@@ -103,30 +105,27 @@ void append_near(int i, const std::vector<Grid>& grids, const Clumps& clumps, co
           const int j = grid.members[static_cast<Index>(k)];
           if (j <= i) continue;
           const double near = bound + work.bound[static_cast<Index>(j)] + work.margin;
-          if ((clumps.position[static_cast<Index>(j)] - x).squaredNorm() < near * near) others.push_back(j);
+          if ((clumps.position[static_cast<Index>(j)] - x).squaredNorm() < near * near)
+            pairs.emplace_back(i, j);
         }
       }
   }
+  std::sort(pairs.begin() + before, pairs.end());
 }
 
-}  // namespace
-
-Pairs near_clumps(const Clumps& clumps, const Workspace& work) {
-  if (clumps.size() < 2) return {};
-  const std::vector<Grid> grids = make_grids(clumps, work);
+/// What `append` finds for each of the stones, in their order, whichever thread asks for which.
+template <class Append>
+Pairs for_all(int stones, const Append& append) {
   constexpr int run = 1024;  // consecutive stones that one thread takes at a time
-  std::vector<Pairs> of_run(static_cast<Index>((clumps.size() + run - 1) / run));
+  std::vector<Pairs> of_run(static_cast<Index>((stones + run - 1) / run));
 #pragma omp parallel for schedule(dynamic) if (of_run.size() > 1)
   for (Index r = 0; r < of_run.size(); ++r) {
-    std::vector<int> others;
-    const int first = static_cast<int>(r) * run, end = std::min(first + run, clumps.size());
-    for (int i = first; i < end; ++i) {
-      others.clear();
-      append_near(i, grids, clumps, work, others);
-      std::sort(others.begin(), others.end());
-      for (int j : others) of_run[r].emplace_back(i, j);
-    }
+    Pairs own;
+    const int first = static_cast<int>(r) * run, end = std::min(first + run, stones);
+    for (int i = first; i < end; ++i) append(i, own);
+    of_run[r] = std::move(own);
   }
+  if (of_run.size() == 1) return std::move(of_run[0]);
   Pairs pairs;
   Index n = 0;
   for (const Pairs& some : of_run) n += some.size();
@@ -135,14 +134,26 @@ Pairs near_clumps(const Clumps& clumps, const Workspace& work) {
   return pairs;
 }
 
+}  // namespace
+
+Pairs near_clumps(const Clumps& clumps, const Workspace& work) {
+  if (clumps.size() < 2) return {};
+  const std::vector<Grid> grids = make_grids(clumps, work);
+  return for_all(clumps.size(), [&](int i, Pairs& pairs) { append_near(i, grids, clumps, work, pairs); });
+}
+
 Pairs near_walls(const Model& model, const State& state, const Workspace& work) {
   Pairs pairs;
-  for (Index w = 0; w < model.walls.size(); ++w)
-    for (int c = 0; state.walls[w].present && c < state.clumps.size(); ++c) {
-      const Vec3 centre = state.walls[w].pose.to_body(state.clumps.position[static_cast<Index>(c)]);
-      if (is_near(model.walls[w].shape, centre, work.bound[static_cast<Index>(c)] + work.margin))
-        pairs.emplace_back(static_cast<int>(w), c);
-    }
+  for (Index w = 0; w < model.walls.size(); ++w) {
+    if (!state.walls[w].present) continue;
+    const Pairs of_wall = for_all(state.clumps.size(), [&](int c, Pairs& near) {
+      const Index k = static_cast<Index>(c);
+      const Vec3 centre = state.walls[w].pose.to_body(state.clumps.position[k]);
+      if (is_near(model.walls[w].shape, centre, work.bound[k] + work.margin))
+        near.emplace_back(static_cast<int>(w), c);
+    });
+    pairs.insert(pairs.end(), of_wall.begin(), of_wall.end());
+  }
   return pairs;
 }
 

@@ -56,6 +56,16 @@ double equal_volume_radius(const Model& model, const Clumps& clumps, std::size_t
   return 0.5 * model.space.size_of_volume(volume_of(model, clumps, clump));
 }
 
+std::vector<double> equal_volume_radii(const Model& model, const Clumps& clumps) {
+  std::vector<double> radii(clumps.id.size());
+#pragma omp parallel for schedule(static) if (clumps.size() > 1000)
+  for (int i = 0; i < clumps.size(); ++i) {
+    const Index k = static_cast<Index>(i);
+    radii[k] = equal_volume_radius(model, clumps, k);
+  }
+  return radii;
+}
+
 int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose) {
   Clumps& c = state.clumps;
   c.id.push_back(c.next_id++);

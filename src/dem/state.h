@@ -166,6 +166,8 @@ double volume_of(const Model& model, const Clumps& clumps, std::size_t clump);
 
 /// Radius of the ball, or the disc, of that volume [m].
 double equal_volume_radius(const Model& model, const Clumps& clumps, std::size_t clump);
+/// That of each stone: contacts are more than stones, and each would ask twice.
+std::vector<double> equal_volume_radii(const Model& model, const Clumps& clumps);
 
 /// Adds a stone at rest; returns its index. Mass is density x volume.
 int add_clump(const Model& model, State& state, int shape, double scale, int material, const Pose& pose);

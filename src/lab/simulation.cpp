@@ -42,6 +42,7 @@ void Simulation::drive(std::size_t wall, const Vec3& velocity) {
 }
 
 void Simulation::stop_stones() {
+#pragma omp parallel for schedule(static) if (state.clumps.size() > 1000)
   for (int c = 0; c < state.clumps.size(); ++c) set_motion(state, c, Vec3::Zero(), Vec3::Zero());
 }
 

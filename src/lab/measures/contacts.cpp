@@ -55,9 +55,10 @@ double largest_contact_force(const Simulation& sim) {
 
 double largest_overlap(const Simulation& sim) {
   double largest = 0;
+  const std::vector<double> radii = equal_volume_radii(sim.model, sim.state.clumps);
   visit_touching(sim.model, sim.state, [&](const Touching& t) {
-    double radius = equal_volume_radius(sim, static_cast<Index>(t.clump_1));
-    if (t.clump_2 >= 0) radius = std::min(radius, equal_volume_radius(sim, static_cast<Index>(t.clump_2)));
+    double radius = radii[static_cast<Index>(t.clump_1)];
+    if (t.clump_2 >= 0) radius = std::min(radius, radii[static_cast<Index>(t.clump_2)]);
     largest = std::max(largest, t.overlap / radius);
   });
   return largest;

@@ -15,10 +15,11 @@ namespace trackbed {
 Overlaps overlaps_of_stones(const Simulation& sim) {
   Overlaps all;
   int n = 0;
+  const std::vector<double> radii = equal_volume_radii(sim.model, sim.state.clumps);
   visit_touching(sim.model, sim.state, [&](const Touching& t) {
     if (t.clump_2 < 0) return;
-    const double radius = std::min(equal_volume_radius(sim, static_cast<std::size_t>(t.clump_1)),
-                                   equal_volume_radius(sim, static_cast<std::size_t>(t.clump_2)));
+    const double radius =
+        std::min(radii[static_cast<std::size_t>(t.clump_1)], radii[static_cast<std::size_t>(t.clump_2)]);
     all.mean += t.overlap / radius;
     all.largest = std::max(all.largest, t.overlap / radius);
     ++n;
@@ -65,13 +66,15 @@ void Parting::control(Simulation& sim) const {
   if (sim.state.step % stop_every == 0) return sim.stop_stones();
   const Clumps& c = sim.state.clumps;
   const double limit = 0.01 * smallest_ / sim.state.planned_dt;
-  for (std::size_t k = 0; k < c.id.size(); ++k) {
+  const int n = c.size();
+#pragma omp parallel for schedule(static) if (n > 1000)
+  for (int stone = 0; stone < n; ++stone) {
+    const auto k = static_cast<std::size_t>(stone);
     const double bound =
         c.scale[k] * sim.model.templates[static_cast<std::size_t>(c.shape[k])].bounding_radius;
     const double speed = c.velocity[k].norm() + bound * c.angular_velocity[k].norm();
     if (speed <= limit) continue;
-    set_motion(sim.state, static_cast<int>(k), limit / speed * c.velocity[k],
-               limit / speed * c.angular_velocity[k]);
+    set_motion(sim.state, stone, limit / speed * c.velocity[k], limit / speed * c.angular_velocity[k]);
   }
 }
 

@@ -196,7 +196,7 @@ TEST_F(Study, AMeasureThatNoRunLeavesIsRefusedBeforeTheFirst) {
                                       "\"fill.passing_31.5_mm\", \"box.left.force_x\"]\n")),
             "");
   const std::string told = told_of_measures(document("measures = [\"porosity\", \"fill.aded\"]\n"));
-  EXPECT_NE(told.find("study.toml:3:1: error: no run leaves a measure called fill.aded"), std::string::npos)
+  EXPECT_NE(told.find("study.toml:3:12: error: no run leaves a measure called fill.aded"), std::string::npos)
       << told;
   EXPECT_NE(told.find("did you mean fill.added?"), std::string::npos) << told;
   EXPECT_NE(told_of_measures(document("measures = [\"fill.passing_two_mm\"]\n")), "");
