@@ -43,8 +43,9 @@ Simulation falling_stones(int n) {
 
 constexpr int steps = 6000;
 
-std::uint64_t run(Simulation sim, const std::function<void(Simulation&, int)>& meddle = {}) {
-  for (int k = 0; k < steps; ++k) {
+std::uint64_t run(Simulation sim, const std::function<void(Simulation&, int)>& meddle = {},
+                  int last = steps) {
+  for (int k = 0; k < last; ++k) {
     if (meddle) meddle(sim, k);
     sim.step();
   }
@@ -62,6 +63,29 @@ TEST(same, any_number_of_threads) {
   for (int threads : {1, 2, 4}) {
     omp_set_num_threads(threads);
     EXPECT_EQ(run(falling_stones(208)), reference()) << threads;
+  }
+  omp_set_num_threads(before);
+}
+
+// Fewer stones make smaller patches, and blocks of pairs from before then lie across two of them.
+TEST(same, stones_removed_on_any_number_of_threads) {
+  const auto remove_some = [](Simulation& sim, int k) {
+    if (k != 9000) return;
+    std::vector<int> gone;
+    for (int c = 0; c < sim.state.clumps.size(); c += 7) gone.push_back(c);
+    const int patch = sim.work.patch_size;
+    remove_clumps(sim.state, gone);
+    sim.changed();
+    sim.step();
+    EXPECT_LT(sim.work.patch_size, patch);
+  };
+  constexpr int long_run = 12000;  // so many stones are longer on their way down
+  const int before = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const std::uint64_t alone = run(falling_stones(560), remove_some, long_run);
+  for (int threads : {2, 4}) {
+    omp_set_num_threads(threads);
+    EXPECT_EQ(run(falling_stones(560), remove_some, long_run), alone) << threads;
   }
   omp_set_num_threads(before);
 }
