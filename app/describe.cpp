@@ -25,11 +25,8 @@ std::vector<Measure> all_measures() {
   Simulation sim;
   sim.container.extend(Vec3::Zero()).extend(Vec3::Ones());
   sim.force_limits = RecordInput{}.force_bins;
-  Wall wall{make_plane_wall("WALL", 1.0), 0, {}}, body = wall;
-  body.shape.name = "BODY";
-  body.body.emplace();
-  add_wall(sim, wall, {});
-  add_wall(sim, body, {});
+  add_wall(sim, {make_plane_wall("WALL", 1.0), 0, {}}, {});
+  add_body_by_name(sim, "BODY");
   return measures_of(sim);
 }
 

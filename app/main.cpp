@@ -57,7 +57,7 @@ void tune_libraries(char** argv) {
   ::setenv("GOMP_SPINCOUNT", "1000", 1);
   // Large pages, where the system leaves the choice to the program: a bed is tens of megabytes. What is freed
   // stays with the program: each time that the pairs are made anew it wants as much again, in zeros, which
-  // took a tenth of the time in which 584,000 balls part.
+  // took 3 to 12 % of the time in which 584,000 balls part.
   ::setenv(
       "GLIBC_TUNABLES",
       "glibc.malloc.hugetlb=1:glibc.malloc.trim_threshold=1000000000:glibc.malloc.mmap_threshold=33554432",

@@ -95,18 +95,15 @@ void inspect(const Model& model, const State& state, const Workspace& work) {
                                  state.step, state.time));
   visit_touching(model, state, [&](const Touching& t) {
     const Index first_stone = static_cast<Index>(t.clump_1);
-    // No pebble is larger than its stone: hardly a contact needs the roots of volumes.
-    double least = smallest_pebble(model, c, first_stone);
-    if (t.clump_2 >= 0) least = std::min(least, smallest_pebble(model, c, static_cast<Index>(t.clump_2)));
     if (t.clump_2 < 0 && t.overlap > limits.through * t.radius &&
         !model.walls[static_cast<Index>(t.wall)].shape.is_plane)
       fail(state, first_stone,
            fmt::format("a pebble of {:.3g} mm radius is about to be pushed through wall {}", 1e3 * t.radius,
                        model.walls[static_cast<Index>(t.wall)].shape.name));
+    // No pebble is larger than its stone: hardly a contact needs the roots of volumes.
+    const double least = smaller_of_stones(t, [&](Index i) { return smallest_pebble(model, c, i); });
     if (t.overlap <= limits.overlap * least) return;
-    double radius = equal_volume_radius(model, c, first_stone);
-    if (t.clump_2 >= 0)
-      radius = std::min(radius, equal_volume_radius(model, c, static_cast<Index>(t.clump_2)));
+    const double radius = smaller_of_stones(t, [&](Index i) { return equal_volume_radius(model, c, i); });
     if (t.overlap <= limits.overlap * radius) return;
     const std::string other =
         t.clump_2 >= 0 ? fmt::format("stone {}", c.id[static_cast<Index>(t.clump_2)])

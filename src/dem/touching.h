@@ -2,6 +2,7 @@
 // output.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "dem/laws/table.h"
@@ -28,6 +29,13 @@ struct Touching {
   /// Elastic force on body 2 [N].
   Vec3 force() const { return properties->kn * overlap * normal + memory->shear; }
 };
+
+/// The smaller of what a size says of the two stones; that of the one stone where it touches a wall.
+template <class Size>
+double smaller_of_stones(const Touching& t, Size&& size) {
+  const double size_1 = size(static_cast<std::size_t>(t.clump_1));
+  return t.clump_2 < 0 ? size_1 : std::min(size_1, size(static_cast<std::size_t>(t.clump_2)));
+}
 
 /// The touching contacts of one clump pair, or of one clump and a wall.
 template <class Visit>

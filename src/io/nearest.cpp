@@ -26,6 +26,9 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return distance[a.size()][b.size()];
 }
 
+namespace {
+
+/// The known words, nearest first; the given order among equals.
 std::vector<std::string> by_distance(std::string_view word, std::vector<std::string> known) {
   constexpr std::size_t longest = 64;  // longer words are compared by their beginning
   word = word.substr(0, longest);
@@ -41,9 +44,12 @@ std::vector<std::string> by_distance(std::string_view word, std::vector<std::str
   return sorted;
 }
 
-std::string known_words(std::string_view word, const std::vector<std::string>& known) {
+}  // namespace
+
+std::string known_words(std::string_view word, const std::vector<std::string>& known, std::size_t most) {
   if (known.empty()) return "nothing is allowed here";
-  const std::vector<std::string> sorted = by_distance(word, known);
+  std::vector<std::string> sorted = by_distance(word, known);
+  sorted.resize(std::min(sorted.size(), most));
   const std::size_t allowed = std::max<std::size_t>(1, std::min(word.size(), sorted.front().size()) / 2);
   const bool longer =
       word.size() > 2 && (word.starts_with(sorted.front()) || sorted.front().starts_with(word));

@@ -11,11 +11,9 @@ namespace trackbed {
 /// string alignment; Damerau 1964).
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The known words, nearest first; the given order among equals.
-std::vector<std::string> by_distance(std::string_view word, std::vector<std::string> known);
-
 /// "did you mean friction? Known are friction, kn, ks": all known words, nearest first. The question is put
-/// only when the nearest is near.
-std::string known_words(std::string_view word, const std::vector<std::string>& known);
+/// only when the nearest is near. Of long lists the nearest few are enough: `most`.
+std::string known_words(std::string_view word, const std::vector<std::string>& known,
+                        std::size_t most = std::string::npos);
 
 }  // namespace trackbed

@@ -24,6 +24,9 @@ struct Measure {
 /// All measures of a simulation: the general ones, and those of each wall and body ("sleeper.force_z").
 std::vector<Measure> measures_of(const Simulation& sim);
 
+/// A body of which only the measures are wanted, before it is built: a plane stands for its shape.
+void add_body_by_name(Simulation& sim, const std::string& name);
+
 /// Those of them with these names, in this order. Throws InputError for a name that is no measure, with the
 /// nearest.
 std::vector<Measure> measures_called(const Simulation& sim, const std::vector<std::string>& names);

@@ -57,9 +57,7 @@ double largest_overlap(const Simulation& sim) {
   double largest = 0;
   const std::vector<double> radii = equal_volume_radii(sim.model, sim.state.clumps);
   visit_touching(sim.model, sim.state, [&](const Touching& t) {
-    double radius = radii[static_cast<Index>(t.clump_1)];
-    if (t.clump_2 >= 0) radius = std::min(radius, radii[static_cast<Index>(t.clump_2)]);
-    largest = std::max(largest, t.overlap / radius);
+    largest = std::max(largest, t.overlap / smaller_of_stones(t, [&](Index i) { return radii[i]; }));
   });
   return largest;
 }

@@ -128,13 +128,15 @@ std::vector<Measure> measures_of(const Simulation& sim) {
   return all;
 }
 
+void add_body_by_name(Simulation& sim, const std::string& name) {
+  add_wall(sim, {make_plane_wall(name, 1.0), 0, BodyProperties{}}, {});
+}
+
 std::optional<std::string> hint_for_measure(const Simulation& sim, const std::string& name) {
   std::vector<std::string> known;
   for (const Measure& m : measures_of(sim)) known.push_back(m.name);
   if (std::ranges::find(known, name) != known.end()) return std::nullopt;
-  known = by_distance(name, known);
-  known.resize(std::min<std::size_t>(known.size(), 6));
-  return known_words(name, known) + "; trackbed describe measures lists all";
+  return known_words(name, known, 6) + "; trackbed describe measures lists all";
 }
 
 std::vector<Measure> measures_called(const Simulation& sim, const std::vector<std::string>& names) {

@@ -18,8 +18,7 @@ Overlaps overlaps_of_stones(const Simulation& sim) {
   const std::vector<double> radii = equal_volume_radii(sim.model, sim.state.clumps);
   visit_touching(sim.model, sim.state, [&](const Touching& t) {
     if (t.clump_2 < 0) return;
-    const double radius =
-        std::min(radii[static_cast<std::size_t>(t.clump_1)], radii[static_cast<std::size_t>(t.clump_2)]);
+    const double radius = smaller_of_stones(t, [&](std::size_t i) { return radii[i]; });
     all.mean += t.overlap / radius;
     all.largest = std::max(all.largest, t.overlap / radius);
     ++n;

@@ -30,10 +30,7 @@ std::vector<std::string> general_measures(const CaseInput& in) {
   Simulation sim;
   sim.force_limits = in.record.force_bins;
   for (const auto& [name, wall] : in.walls) wall.input->build(name, 0, sim);
-  for (const auto& [name, body] : in.bodies) {
-    Wall plane{make_plane_wall(name, 1.0), 0, BodyProperties{}};
-    add_wall(sim, plane, {});
-  }
+  for (const auto& [name, body] : in.bodies) add_body_by_name(sim, name);
   std::vector<std::string> names;
   for (const Measure& m : measures_of(sim)) names.push_back(m.name);
   return names;
@@ -56,9 +53,7 @@ ForeseenMeasures::ForeseenMeasures(const CaseInput& run) : names_(measures_of_ru
 
 ForeseenMeasures::ForeseenMeasures(const StudyInput& study, const std::vector<Condition>& conditions) {
   for (const Condition& condition : conditions) {
-    std::vector<std::string> set = study.set;
-    set.insert(set.end(), condition.set.begin(), condition.set.end());
-    const Document document(study.base, set);
+    const Document document(study.base, changes_of(study, condition));
     all_pass_ = is_track_case(document);
     if (all_pass_) return;
     CaseInput in;
@@ -72,10 +67,7 @@ ForeseenMeasures::ForeseenMeasures(const StudyInput& study, const std::vector<Co
 std::optional<std::string> ForeseenMeasures::hint_for(const std::string& name) const {
   if (all_pass_ || std::ranges::any_of(names_, [&](const auto& foreseen) { return fits(name, foreseen); }))
     return std::nullopt;
-  constexpr std::size_t most = 6;
-  std::vector<std::string> nearest = by_distance(name, names_);
-  nearest.resize(std::min(nearest.size(), most));
-  return known_words(name, nearest);
+  return known_words(name, names_, 6);
 }
 
 void check_measures(const Document& document, const StudyInput& study, const ForeseenMeasures& foreseen) {

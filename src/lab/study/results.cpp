@@ -87,8 +87,7 @@ std::vector<std::string> measures_of(const StudyInput& study, const std::vector<
   if (!all.empty())
     for (const std::string& name : study.measures)
       if (std::ranges::none_of(outcomes, [&](const Outcome& o) { return find_measure(o.summary, name); }))
-        throw InputError(
-            fmt::format("no member has the measure {}: {}", name, known_words(name, by_distance(name, all))));
+        throw InputError(fmt::format("no member has the measure {}: {}", name, known_words(name, all)));
   return study.measures;
 }
 

@@ -140,6 +140,12 @@ std::vector<Condition> conditions_of(const Document& document, const StudyInput&
   return all;
 }
 
+std::vector<std::string> changes_of(const StudyInput& study, const Condition& condition) {
+  std::vector<std::string> all = study.set;
+  all.insert(all.end(), condition.set.begin(), condition.set.end());
+  return all;
+}
+
 /// What a case understands of its file and changes.
 template <class Input>
 nlohmann::ordered_json input_of(const std::filesystem::path& file, const std::vector<std::string>& set) {
@@ -154,8 +160,7 @@ Member make_member(const StudyInput& study, const std::vector<Condition>& condit
   member.condition = condition;
   member.seed = seed;
   member.name = fmt::format("{}-seed-{}", plain(conditions[condition].name), seed);
-  member.set = study.set;
-  for (const std::string& change : conditions[condition].set) member.set.push_back(change);
+  member.set = changes_of(study, conditions[condition]);
   try {
     if (is_track_case(Document(study.base))) {  // nothing in it is drawn by chance
       member.input = input_of<TrackCaseInput>(study.base, member.set);

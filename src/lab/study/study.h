@@ -60,6 +60,9 @@ struct Condition {
 /// fastest. Throws InputError at the key that is wrong.
 std::vector<Condition> conditions_of(const Document& document, const StudyInput& study);
 
+/// What all members of a condition change in the case: the study's changes, then the condition's.
+std::vector<std::string> changes_of(const StudyInput& study, const Condition& condition);
+
 /// One run.
 struct Member {
   std::size_t condition = 0;  // in the list of conditions

@@ -18,6 +18,8 @@ TEST(Nearest, AsksOnlyWhenItIsNear) {
   EXPECT_EQ(known_words("hertzian", {"linear", "hertz"}), "did you mean hertz? known here: hertz, linear");
   EXPECT_EQ(known_words("xyz", {"load", "settle"}), "known here: load, settle");
   EXPECT_EQ(known_words("x", {}), "nothing is allowed here");
+  EXPECT_EQ(known_words("setle", {"load", "settle", "repeat"}, 2),
+            "did you mean settle? known here: settle, load");
   EXPECT_EQ(known_words(std::string(100'000, 'l'), {"load"}), "known here: load");
 }
 
