@@ -181,14 +181,12 @@ void rebuild_clump_pairs(State& state, Workspace& work) {
   const int patches = (state.clumps.size() + work.patch_size - 1) / work.patch_size;
   const auto old = blocks_of_patches(state.pair_blocks, work.patch_size, static_cast<Index>(patches));
   std::vector<PatchBlocks> made(old.size());
-#pragma omp parallel if (is_worth_sharing(patches))
-  {
-    const Share own = own_share(patches);
+  for_all_shares(patches, [&](const Share& own) {
     for (int patch = own.first; patch < own.last; ++patch) {
       const Index p = static_cast<Index>(patch);
       made[p].make(pairs_of_patch(near, patch, work.patch_size), old[p], state, work);
     }
-  }
+  });
   state.pair_blocks.clear();
   work.pair_geometry.clear();
   for (PatchBlocks& of_patch : made) {

@@ -2,6 +2,7 @@
 #include "dem/forces.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "dem/laws/table.h"
 #include "dem/open_contact.h"
@@ -316,27 +317,21 @@ int queued_wall_forces(const Model& model, State& state, Workspace& work, double
 }  // namespace
 
 void contact_forces(const Model& model, State& state, Workspace& work, double dt) {
-  const int patches = work.patches();
-  int touching = 0;
   fill_queues(work);
-#pragma omp parallel reduction(+ : touching) if (is_worth_sharing(patches))
-  {
-    const Share own = own_share(patches);
+  const auto of_share = [&](const Share& own) {
+    int touching = 0;
     for (int k = own.first; k < own.last; ++k)
       touching += patch_forces(model, state, work, static_cast<Index>(k), dt);
-    touching += queued_wall_forces(model, state, work, dt);
-  }
-  work.touching = touching;
+    return touching + queued_wall_forces(model, state, work, dt);
+  };
+  work.touching = joined_of_shares(work.patches(), of_share, std::plus());
 }
 
 void gather_forces(const Model& model, State& state, Workspace& work, double dt) {
-  const int patches = work.patches();
-#pragma omp parallel if (is_worth_sharing(patches))
-  {
-    const Share own = own_share(patches);
+  for_all_shares(work.patches(), [&](const Share& own) {
     for (Index c = work.first_clump(own.first); c < work.first_clump(own.last); ++c)
       gather_clump(state, work, c);
-  }
+  });
   for (Index w = 0; w < state.walls.size(); ++w) gather_wall(model, state, work, w, dt);
 }
 

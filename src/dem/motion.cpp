@@ -268,12 +268,9 @@ Vec3 damped(const Vec3& unbalanced, const Vec3& velocity, double alpha) {
 
 void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
   const double kick_time = 0.5 * (state.dt + dt);
-  double way = 0;
   const Index n = state.clumps.id.size();
-  const int patches = work.patches();
-#pragma omp parallel reduction(max : way) if (is_worth_sharing(patches))
-  {
-    const Share own = own_share(patches);
+  const auto of_share = [&](const Share& own) {
+    double way = 0;
     const Index last = work.first_clump(own.last);
     for (Index first = work.first_clump(own.first); first < last; first += Watch::group) {
       double longest = 0;
@@ -282,8 +279,9 @@ void move_clumps(const Model& model, State& state, Workspace& work, double dt) {
       work.group_way[first / Watch::group] = longest;
       way = std::max(way, longest);
     }
-  }
-  work.way += way;
+    return way;
+  };
+  work.way += joined_of_shares(work.patches(), of_share, [](double a, double b) { return std::max(a, b); });
 }
 
 void move_walls(const Model& model, State& state, Workspace& work, double dt) {
