@@ -6,11 +6,6 @@
 
 namespace trackbed {
 
-/// So many patches are worth more than one thread.
-inline bool is_worth_sharing(int patches) {
-  return patches > 4;
-}
-
 /// A range of patches.
 struct Share {
   int first, last;
@@ -22,12 +17,18 @@ inline Share share_of(int thread, int threads, int patches) {
   return {begin(thread), begin(thread + 1)};
 }
 
+/// So many threads share so many patches.
+inline int sharing_threads(int patches) {
+  constexpr int worth_sharing = 5;
+  return patches < worth_sharing ? 1 : omp_get_max_threads();
+}
+
 /// Does `work` on every share, by the thread that owns it. One thread enters no parallel region: leaving one
 /// wakes the others by a call of the system, even where there are none, and a small bed has a step done in
 /// the time of twenty.
 template <class Work>
 void for_all_shares(int patches, Work&& work) {
-  if (!is_worth_sharing(patches) || omp_get_max_threads() == 1) return work(Share{0, patches});
+  if (sharing_threads(patches) == 1) return work(Share{0, patches});
 #pragma omp parallel
   work(share_of(omp_get_thread_num(), omp_get_num_threads(), patches));
 }
@@ -35,6 +36,7 @@ void for_all_shares(int patches, Work&& work) {
 /// The same with the results of the work joined, in any order.
 template <class Work, class Join>
 auto joined_of_shares(int patches, Work&& work, Join&& join) {
+  if (sharing_threads(patches) == 1) return work(Share{0, patches});
   decltype(work(Share{})) all{};
   for_all_shares(patches, [&](const Share& own) {
     const auto result = work(own);

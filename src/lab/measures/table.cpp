@@ -136,7 +136,7 @@ std::optional<std::string> hint_for_measure(const Simulation& sim, const std::st
   std::vector<std::string> known;
   for (const Measure& m : measures_of(sim)) known.push_back(m.name);
   if (std::ranges::find(known, name) != known.end()) return std::nullopt;
-  return known_words(name, known, 6) + "; trackbed describe measures lists all";
+  return known_words(name, known, few_words) + "; trackbed describe measures lists all";
 }
 
 std::vector<Measure> measures_called(const Simulation& sim, const std::vector<std::string>& names) {

@@ -67,7 +67,7 @@ ForeseenMeasures::ForeseenMeasures(const StudyInput& study, const std::vector<Co
 std::optional<std::string> ForeseenMeasures::hint_for(const std::string& name) const {
   if (all_pass_ || std::ranges::any_of(names_, [&](const auto& foreseen) { return fits(name, foreseen); }))
     return std::nullopt;
-  return known_words(name, names_, 6);
+  return known_words(name, names_, few_words);
 }
 
 void check_measures(const Document& document, const StudyInput& study, const ForeseenMeasures& foreseen) {
