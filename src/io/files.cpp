@@ -35,6 +35,17 @@ std::string read_file(const fs::path& path, std::size_t limit) {
 
 namespace {
 
+/// Whether it could be done; else errno tells why not.
+bool write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
 /// Makes names in a folder last; some file systems cannot, and need not.
 void sync_folder(const fs::path& folder) {
   const int file = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -46,28 +57,26 @@ void sync_folder(const fs::path& folder) {
 }  // namespace
 
 void write_file(const fs::path& path, std::string_view bytes, Lasting lasting) {
+  write_file(path, {bytes}, lasting);
+}
+
+void write_file(const fs::path& path, std::initializer_list<std::string_view> parts, Lasting lasting) {
   const fs::path draft = path.string() + fmt::format(".{}.part", ::getpid());
-  const auto fail = [&](const char* what) {
-    const int cause = errno;
+  const auto fail = [&](const char* what, int cause) {
     ::unlink(draft.c_str());
     throw RunError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(cause)));
   };
   const int file = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (file < 0) fail("cannot be written");
-  for (std::string_view rest = bytes; !rest.empty();) {
-    const ssize_t written = ::write(file, rest.data(), rest.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) {
-      const int cause = errno;
-      ::close(file);
-      errno = cause;
-      fail("cannot be written");
-    }
-    rest.remove_prefix(static_cast<std::size_t>(written));
+  if (file < 0) fail("cannot be written", errno);
+  for (const std::string_view part : parts) {
+    if (write_all(file, part)) continue;
+    const int cause = errno;
+    ::close(file);
+    fail("cannot be written", cause);
   }
   const bool is_safe = lasting == Lasting::in_memory || ::fsync(file) == 0;
-  if (::close(file) != 0 || !is_safe) fail("cannot be written");
-  if (::rename(draft.c_str(), path.c_str()) != 0) fail("cannot be put in place");
+  if (::close(file) != 0 || !is_safe) fail("cannot be written", errno);
+  if (::rename(draft.c_str(), path.c_str()) != 0) fail("cannot be put in place", errno);
   if (lasting == Lasting::on_disk) sync_folder(path.parent_path());
 }
 

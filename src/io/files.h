@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,10 @@ enum class Lasting { in_memory, on_disk };
 
 /// Writes beside `path` and renames: `path` holds the old text or the new, never a part. Throws RunError.
 void write_file(const std::filesystem::path& path, std::string_view bytes,
+                Lasting lasting = Lasting::in_memory);
+
+/// The same with several parts, one after the other: large ones need not be joined before.
+void write_file(const std::filesystem::path& path, std::initializer_list<std::string_view> parts,
                 Lasting lasting = Lasting::in_memory);
 
 /// Makes a folder and those above it. Throws RunError.

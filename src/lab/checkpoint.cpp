@@ -37,10 +37,8 @@ std::vector<fs::path> files_in(const fs::path& folder) {
 
 void write_checked(const fs::path& file, std::string_view bytes) {
   const std::uint64_t sum = checksum(bytes);
-  std::string text(state_format);
-  text.append(reinterpret_cast<const char*>(&sum), sizeof sum);
-  text += bytes;
-  write_file(file, text, Lasting::on_disk);
+  write_file(file, {state_format, {reinterpret_cast<const char*>(&sum), sizeof sum}, bytes},
+             Lasting::on_disk);
 }
 
 std::optional<std::string> read_checked(const fs::path& file) {
@@ -55,7 +53,8 @@ std::optional<std::string> read_checked(const fs::path& file) {
   if (bytes.size() < begin || !bytes.starts_with(state_format)) return std::nullopt;
   std::memcpy(&sum, bytes.data() + state_format.size(), sizeof sum);
   if (sum != checksum(std::string_view(bytes).substr(begin))) return std::nullopt;
-  return bytes.substr(begin);
+  bytes.erase(0, begin);
+  return bytes;
 }
 
 Checkpoints::Checkpoints(fs::path folder, double every) : folder_(std::move(folder)), every_(every) {}

@@ -161,18 +161,18 @@ void Course::take_up(std::string bytes) {
 }
 
 void Course::leave_end() {
-  if (!ends_.wants(stages_[stage_].name)) return;
-  Archive a;
-  archive_between(a);
-  ends_.write(stages_[stage_].name, a.bytes());
+  const std::string& name = stages_[stage_].name;
+  std::optional<Archive> end = ends_.begin(name);
+  if (!end) return;
+  archive_between(*end);
+  ends_.keep(name, *end);
 }
 
 void Course::take_over() {
   for (std::size_t k = stages_.size(); k-- > 1;) {
-    auto bytes = ends_.find(stages_[k - 1].name);
-    if (!bytes) continue;
-    Archive a(std::move(*bytes));
-    archive_between(a);
+    std::optional<Archive> end = ends_.find(stages_[k - 1].name);
+    if (!end) continue;
+    archive_between(*end);
     for (StageSummary& stage : summary_.stages) stage.taken_over = true;
     stage_ = k;
     find_contacts(sim_.model, sim_.state, sim_.work);

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/archive.h"
 #include "base/hash.h"
 #include "io/files.h"
 #include "lab/checkpoint.h"
@@ -91,28 +90,32 @@ fs::path StageEnds::file_of(const std::string& what) const {
   return folder_ / fmt::format("{:016x}.end", hash.value());
 }
 
-bool StageEnds::wants(const std::string& stage) const {
-  return is_kept(stage) && !fs::exists(file_of(what_decides(stage)));
+// What decides comes first: two of them may have one hash.
+
+std::optional<Archive> StageEnds::begin(const std::string& stage) const {
+  if (!is_kept(stage)) return std::nullopt;
+  std::string what = what_decides(stage);
+  if (fs::exists(file_of(what))) return std::nullopt;
+  Archive end;
+  end(what);
+  return end;
 }
 
-void StageEnds::write(const std::string& stage, std::string_view bytes) const {
-  std::string what = what_decides(stage), content(bytes);
-  Archive a;
-  a(what, content);
+void StageEnds::keep(const std::string& stage, const Archive& end) const {
   make_folder(folder_);
-  write_checked(file_of(what), a.bytes());
+  write_checked(file_of(what_decides(stage)), end.bytes());
 }
 
-std::optional<std::string> StageEnds::find(const std::string& stage) const {
+std::optional<Archive> StageEnds::find(const std::string& stage) const {
   if (!is_kept(stage)) return std::nullopt;
   const std::string wanted = what_decides(stage);
-  auto found = read_checked(file_of(wanted));
-  if (!found) return std::nullopt;
-  Archive a(std::move(*found));
-  std::string what, content;
-  a(what, content);
+  auto bytes = read_checked(file_of(wanted));
+  if (!bytes) return std::nullopt;
+  Archive end(std::move(*bytes));
+  std::string what;
+  end(what);
   if (what != wanted) return std::nullopt;
-  return content;
+  return end;
 }
 
 }  // namespace trackbed

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
+#include "base/archive.h"
 #include "dem/model.h"
 
 namespace trackbed {
@@ -16,14 +16,16 @@ class StageEnds {
   /// In `folder`; empty: nothing is kept. `input` is the resolved case, whose record.keep names the stages.
   StageEnds(std::filesystem::path folder, const nlohmann::ordered_json& input, const Model& model);
 
-  /// Whether the end of the stage of this name is to be kept and is not yet.
-  bool wants(const std::string& stage) const;
+  /// An archive to which the end of the stage of this name is to be written; nothing when it is not to be
+  /// kept, or is already.
+  std::optional<Archive> begin(const std::string& stage) const;
 
-  /// Keeps it. Throws RunError.
-  void write(const std::string& stage, std::string_view bytes) const;
+  /// Keeps what was written to it. Throws RunError.
+  void keep(const std::string& stage, const Archive& end) const;
 
-  /// The bytes of an end that a run left which was the same up to it, by the same program; else nothing.
-  std::optional<std::string> find(const std::string& stage) const;
+  /// An archive that reads an end which a run left that was the same up to it, by the same program; else
+  /// nothing.
+  std::optional<Archive> find(const std::string& stage) const;
 
  private:
   bool is_kept(const std::string& stage) const;

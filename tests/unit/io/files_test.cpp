@@ -23,6 +23,8 @@ TEST_F(Files, WhatIsWrittenIsRead) {
   EXPECT_EQ(read_file(folder_ / "f"), bytes);
   write_file(folder_ / "f", "shorter");
   EXPECT_EQ(read_file(folder_ / "f"), "shorter");
+  write_file(folder_ / "f", {"in ", "", "parts"});
+  EXPECT_EQ(read_file(folder_ / "f"), "in parts");
   // Nothing but the file is left: no drafts.
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2);
 }
