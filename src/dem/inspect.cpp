@@ -78,53 +78,98 @@ double smallest_pebble(const Model& model, const Clumps& c, Index i) {
   return c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius;
 }
 
+/// Of a contact; the first stone is the one to be named.
+std::optional<std::string> what_is_wrong(const Model& model, const Clumps& c, const Touching& t) {
+  const Limits& limits = model.limits;
+  if (t.clump_2 < 0 && t.overlap > limits.through * t.radius &&
+      !model.walls[static_cast<Index>(t.wall)].shape.is_plane)
+    return fmt::format("a pebble of {:.3g} mm radius is about to be pushed through wall {}", 1e3 * t.radius,
+                       model.walls[static_cast<Index>(t.wall)].shape.name);
+  // No pebble is larger than its stone: hardly a contact needs the roots of volumes.
+  const double least = smaller_of_stones(t, [&](Index i) { return smallest_pebble(model, c, i); });
+  if (t.overlap <= limits.overlap * least) return std::nullopt;
+  const double radius = smaller_of_stones(t, [&](Index i) { return equal_volume_radius(model, c, i); });
+  if (t.overlap <= limits.overlap * radius) return std::nullopt;
+  const std::string other = t.clump_2 >= 0
+                                ? fmt::format("stone {}", c.id[static_cast<Index>(t.clump_2)])
+                                : fmt::format("wall {}", model.walls[static_cast<Index>(t.wall)].shape.name);
+  return fmt::format("overlaps {} by {:.3g} mm, {:.0f} % of its radius (limit {:.0f} %)", other,
+                     1e3 * t.overlap, 100 * t.overlap / radius, 100 * limits.overlap);
+}
+
+/// The first of so many things of which something is wrong, whoever finds it; `n` when all are sound.
+template <class IsWrong>
+int first_wrong(int n, int worth_sharing, const IsWrong& is_wrong) {
+  int first = n;
+#pragma omp parallel for schedule(static) reduction(min : first) if (n > worth_sharing)
+  for (int k = 0; k < n; ++k)
+    if (k < first && is_wrong(k)) first = k;
+  return first;
+}
+
+void inspect_stones(const Model& model, const State& state, const Workspace& work) {
+  const auto wrong = [&](int c) { return what_is_wrong(model, state.clumps, work, static_cast<Index>(c)); };
+  const int n = state.clumps.size();
+  const int first = first_wrong(n, 1000, [&](int c) { return wrong(c).has_value(); });
+  if (first < n) fail(state, static_cast<Index>(first), *wrong(first));
+}
+
+template <class Block>
+void inspect_contacts(const Model& model, const State& state, const std::vector<Block>& blocks) {
+  const auto each_wrong = [&](int block, const auto& tell) {
+    const Block& b = blocks[static_cast<Index>(block)];
+    for (const auto& pair : b.pairs)
+      visit_pair(model, state, b, pair, [&](const Touching& t) {
+        if (const auto what = what_is_wrong(model, state.clumps, t)) tell(t, *what);
+      });
+  };
+  const int n = static_cast<int>(blocks.size());
+  const int first = first_wrong(n, 16, [&](int block) {
+    bool is_wrong = false;
+    each_wrong(block, [&](const Touching&, const std::string&) { is_wrong = true; });
+    return is_wrong;
+  });
+  if (first < n)
+    each_wrong(first, [&](const Touching& t, const std::string& what) {
+      fail(state, static_cast<Index>(t.clump_1), what);
+    });
+}
+
 }  // namespace
 
 void inspect(const Model& model, const State& state, const Workspace& work) {
-  const Clumps& c = state.clumps;
-  const Limits& limits = model.limits;
-  int first = c.size();  // that something is wrong with
-#pragma omp parallel for schedule(static) reduction(min : first) if (c.size() > 1000)
-  for (int i = 0; i < c.size(); ++i)
-    if (what_is_wrong(model, c, work, static_cast<Index>(i))) first = std::min(first, i);
-  if (first < c.size())
-    fail(state, static_cast<Index>(first), *what_is_wrong(model, c, work, static_cast<Index>(first)));
+  inspect_stones(model, state, work);
   for (const WallState& wall : state.walls)
     if (!wall.pose.position.allFinite() || !wall.velocity.allFinite())
       throw RunError(fmt::format("step {}, t = {:.6g} s: the motion of a wall or body is not a number",
                                  state.step, state.time));
-  visit_touching(model, state, [&](const Touching& t) {
-    const Index first_stone = static_cast<Index>(t.clump_1);
-    if (t.clump_2 < 0 && t.overlap > limits.through * t.radius &&
-        !model.walls[static_cast<Index>(t.wall)].shape.is_plane)
-      fail(state, first_stone,
-           fmt::format("a pebble of {:.3g} mm radius is about to be pushed through wall {}", 1e3 * t.radius,
-                       model.walls[static_cast<Index>(t.wall)].shape.name));
-    // No pebble is larger than its stone: hardly a contact needs the roots of volumes.
-    const double least = smaller_of_stones(t, [&](Index i) { return smallest_pebble(model, c, i); });
-    if (t.overlap <= limits.overlap * least) return;
-    const double radius = smaller_of_stones(t, [&](Index i) { return equal_volume_radius(model, c, i); });
-    if (t.overlap <= limits.overlap * radius) return;
-    const std::string other =
-        t.clump_2 >= 0 ? fmt::format("stone {}", c.id[static_cast<Index>(t.clump_2)])
-                       : fmt::format("wall {}", model.walls[static_cast<Index>(t.wall)].shape.name);
-    fail(state, first_stone,
-         fmt::format("overlaps {} by {:.3g} mm, {:.0f} % of its radius (limit {:.0f} %)", other,
-                     1e3 * t.overlap, 100 * t.overlap / radius, 100 * limits.overlap));
-  });
+  inspect_contacts(model, state, state.pair_blocks);
+  inspect_contacts(model, state, state.wall_blocks);
+}
+
+EnergyBalance& EnergyBalance::operator+=(const EnergyBalance& other) {
+  kinetic += other.kinetic;
+  potential += other.potential;
+  strain += other.strain;
+  friction_loss += other.friction_loss;
+  rolling_loss += other.rolling_loss;
+  dashpot_loss += other.dashpot_loss;
+  damping_loss += other.damping_loss;
+  boundary_work += other.boundary_work;
+  applied_work += other.applied_work;
+  return *this;
 }
 
 EnergyBalance energy_of(const Model& model, const State& state) {
-  EnergyBalance e;
   const Clumps& c = state.clumps;
-  for (Index i = 0; i < c.id.size(); ++i) {
-    e.kinetic += kinetic_energy(model, state, i, e.damping_loss);
-    e.potential -= c.mass[i] * model.gravity.dot(c.position[i]);
-    e.friction_loss += c.losses[i].friction;
-    e.rolling_loss += c.losses[i].rolling;
-    e.dashpot_loss += c.losses[i].dashpot;
-    e.damping_loss += c.losses[i].damping;
-  }
+  EnergyBalance e = sum_by_runs<EnergyBalance>(c.id.size(), [&](EnergyBalance& sum, Index i) {
+    sum.kinetic += kinetic_energy(model, state, i, sum.damping_loss);
+    sum.potential -= c.mass[i] * model.gravity.dot(c.position[i]);
+    sum.friction_loss += c.losses[i].friction;
+    sum.rolling_loss += c.losses[i].rolling;
+    sum.dashpot_loss += c.losses[i].dashpot;
+    sum.damping_loss += c.losses[i].damping;
+  });
   for (Index w = 0; w < state.walls.size(); ++w) {
     const WallState& wall = state.walls[w];
     e.boundary_work += wall.boundary_work;
@@ -135,25 +180,23 @@ EnergyBalance energy_of(const Model& model, const State& state) {
       e.potential -= body->mass * model.gravity.dot(wall.pose.position);
     }
   }
-  visit_touching(model, state, [&](const Touching& t) {
+  e.strain = sum_of_touching<double>(model, state, [](double& sum, const Touching& t) {
     const ContactProperties& p = *t.properties;
-    e.strain += 0.5 * p.kn * t.overlap * t.overlap;
+    sum += 0.5 * p.kn * t.overlap * t.overlap;
     if (p.ks <= 0) return;
-    e.strain += t.memory->shear.squaredNorm() / (2.0 * p.ks);
+    sum += t.memory->shear.squaredNorm() / (2.0 * p.ks);
     if (p.law == LawKind::linear_rolling)
-      e.strain += t.memory->rolling.squaredNorm() / (2.0 * LinearRolling::rolling_stiffness(p, t.radius));
+      sum += t.memory->rolling.squaredNorm() / (2.0 * LinearRolling::rolling_stiffness(p, t.radius));
   });
   return e;
 }
 
 double unbalanced_ratio(const Model& model, const State& state) {
   const Clumps& c = state.clumps;
-  double unbalanced = 0, all = 0;
-  for (Index i = 0; i < c.id.size(); ++i) {
-    const Vec3 weight = c.mass[i] * model.gravity;
-    unbalanced += (c.force[i] + weight).norm();
-    all += weight.norm();
-  }
+  double unbalanced = sum_by_runs<double>(
+      c.id.size(), [&](double& sum, Index i) { sum += (c.force[i] + c.mass[i] * model.gravity).norm(); });
+  double all = model.gravity.norm() *
+               sum_by_runs<double>(c.id.size(), [&](double& sum, Index i) { sum += c.mass[i]; });
   for (Index w = 0; w < model.walls.size(); ++w) {
     const std::optional<BodyProperties>& body = model.walls[w].body;
     const WallState& wall = state.walls[w];
@@ -165,8 +208,9 @@ double unbalanced_ratio(const Model& model, const State& state) {
     all += weight.norm();
   }
   // Every contact between stones acts on two of them.
-  visit_touching(model, state,
-                 [&](const Touching& t) { all += (t.clump_2 >= 0 ? 2.0 : 1.0) * t.force().norm(); });
+  all += sum_of_touching<double>(model, state, [](double& sum, const Touching& t) {
+    sum += (t.clump_2 >= 0 ? 2.0 : 1.0) * t.force().norm();
+  });
   return all > 0 ? unbalanced / all : 0.0;
 }
 

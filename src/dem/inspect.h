@@ -27,6 +27,7 @@ struct EnergyBalance {
     a(kinetic, potential, strain, friction_loss, rolling_loss, dashpot_loss, damping_loss, boundary_work,
       applied_work);
   }
+  EnergyBalance& operator+=(const EnergyBalance& other);
 
   /// Constant in time when the balance closes.
   double total() const {

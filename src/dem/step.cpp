@@ -27,7 +27,6 @@ class Stopwatch {
 
 void look(const Model& model, State& state, const Workspace& work) {
   inspect(model, state, work);
-  if (model.scaled_share > 0) scale_step(model, state, work);
   const StepPlan plan = plan_steps(model, state, work);
   state.planned_dt = plan.dt;
   state.next_look = state.step + plan.steps;

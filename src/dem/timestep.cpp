@@ -14,6 +14,8 @@ namespace {
 
 using Index = std::size_t;
 
+constexpr int worth_sharing = 64;  // stones
+
 /// Adds a contact's share: k_n along the normal, k_s across it, the rolling spring across it, and its
 /// dashpots.
 void add_contact(const Touching& t, const Vec3& lever, const Mat3& axes, DiagonalStiffness& k) {
@@ -67,8 +69,9 @@ void floor_stiffness(const PairTable& pairs, int material, double reach, double 
   k.viscous_turn = k.viscous_turn.cwiseMax(viscous * reach * reach);
 }
 
-double limit_of_clump(const Model& model, const State& state, const Workspace& work, Index c) {
-  DiagonalStiffness k = stiffness_of(model, state, work, static_cast<int>(c));
+/// Of a stone with contacts of this stiffness [s].
+double limit_of_clump(const Model& model, const State& state, const Workspace& work, Index c,
+                      DiagonalStiffness k) {
   floor_stiffness(model.pairs, state.clumps.material[c], work.bound[c], state.clumps.inertial_mass[c], k);
   return shortest(k, state.clumps.inertial_mass[c], state.clumps.inertia[c]);
 }
@@ -90,20 +93,30 @@ struct Pace {
   int clump = -1;                                           // the fastest
 };
 
+/// Of two sets of stones; of equally fast ones the first, whoever is asked first.
+Pace livelier(const Pace& a, const Pace& b) {
+  const bool is_faster = b.speed > a.speed || (b.speed == a.speed && b.clump >= 0 && b.clump < a.clump);
+  Pace pace = is_faster ? b : a;
+  pace.length = std::min(a.length, b.length);
+  pace.acceleration = std::max(a.acceleration, b.acceleration);
+  return pace;
+}
+#pragma omp declare reduction(livelier:Pace \
+                              : omp_out = livelier(omp_out, omp_in)) initializer(omp_priv = Pace())
+
+Pace pace_of_clump(const Model& model, const State& state, const Workspace& work, int clump) {
+  const Clumps& c = state.clumps;
+  const Index i = static_cast<Index>(clump);
+  return {.length = c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius,
+          .speed = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm(),
+          .acceleration = (c.force[i] / c.mass[i] + model.gravity).norm() * (c.mass[i] / c.inertial_mass[i]),
+          .clump = clump};
+}
+
 Pace pace_of(const Model& model, const State& state, const Workspace& work) {
   Pace pace;
-  const Clumps& c = state.clumps;
-  for (Index i = 0; i < c.id.size(); ++i) {
-    pace.length =
-        std::min(pace.length, c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius);
-    const double v = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm();
-    pace.acceleration = std::max(pace.acceleration, (c.force[i] / c.mass[i] + model.gravity).norm() *
-                                                        (c.mass[i] / c.inertial_mass[i]));
-    if (v > pace.speed || std::isnan(v)) {
-      pace.speed = v;
-      pace.clump = static_cast<int>(i);
-    }
-  }
+#pragma omp parallel for schedule(static) reduction(livelier : pace) if (state.clumps.size() > worth_sharing)
+  for (int c = 0; c < state.clumps.size(); ++c) pace = livelier(pace, pace_of_clump(model, state, work, c));
   for (Index w = 0; w < state.walls.size(); ++w) {
     const WallState& wall = state.walls[w];
     if (!wall.present) continue;
@@ -175,14 +188,26 @@ StableStep shorter(const StableStep& a, const StableStep& b) {
 #pragma omp declare reduction(shorter:StableStep \
                               : omp_out = shorter(omp_out, omp_in)) initializer(omp_priv = omp_orig)
 
-}  // namespace
+/// Of each stone: a look at all contacts that both the scaling and the step want.
+std::vector<DiagonalStiffness> stiffnesses_of(const Model& model, const State& state, const Workspace& work) {
+  std::vector<DiagonalStiffness> all(state.clumps.id.size());
+#pragma omp parallel for schedule(static) if (state.clumps.size() > worth_sharing)
+  for (int c = 0; c < state.clumps.size(); ++c)
+    all[static_cast<Index>(c)] = stiffness_of(model, state, work, c);
+  return all;
+}
 
-StableStep stable_step(const Model& model, const State& state, const Workspace& work) {
+/// The stable step with what `stiffness(c)` tells of each stone.
+template <class StiffnessOf>
+StableStep stable_step_with(const Model& model, const State& state, const Workspace& work,
+                            const StiffnessOf& stiffness) {
   StableStep step{std::numeric_limits<double>::infinity(), -1, false, 0};
   const Clumps& c = state.clumps;
-#pragma omp parallel for schedule(static) reduction(shorter : step) if (c.size() > 64)
-  for (int i = 0; i < c.size(); ++i)
-    step = shorter(step, {limit_of_clump(model, state, work, static_cast<Index>(i)), i, false, 0});
+#pragma omp parallel for schedule(static) reduction(shorter : step) if (c.size() > worth_sharing)
+  for (int i = 0; i < c.size(); ++i) {
+    const double limit = limit_of_clump(model, state, work, static_cast<Index>(i), stiffness(i));
+    step = shorter(step, {limit, i, false, 0});
+  }
   for (Index w = 0; w < model.walls.size(); ++w) {
     if (!model.walls[w].body || !state.walls[w].present) continue;
     const double limit = limit_of_body(model, state, work, w);
@@ -197,14 +222,16 @@ StableStep stable_step(const Model& model, const State& state, const Workspace& 
   return step;
 }
 
-void scale_step(const Model& model, State& state, const Workspace& work) {
+/// Differential density scaling, as plan_steps has it.
+void scale_inertias(const Model& model, State& state, const Workspace& work,
+                    const std::vector<DiagonalStiffness>& stiffness) {
   Clumps& c = state.clumps;
   if (c.id.empty()) return;
   std::vector<double> own(c.id.size());  // limits of the stones' true masses [s]
-#pragma omp parallel for schedule(static) if (c.size() > 64)
+#pragma omp parallel for schedule(static) if (c.size() > worth_sharing)
   for (int i = 0; i < c.size(); ++i) {
     const Index k = static_cast<Index>(i);
-    own[k] = limit_of_clump(model, state, work, k) * std::sqrt(c.mass[k] / c.inertial_mass[k]);
+    own[k] = limit_of_clump(model, state, work, k, stiffness[k]) * std::sqrt(c.mass[k] / c.inertial_mass[k]);
   }
   std::vector<double> sorted = own;
   const auto common = sorted.begin() + static_cast<std::ptrdiff_t>(model.scaled_share *
@@ -212,15 +239,17 @@ void scale_step(const Model& model, State& state, const Workspace& work) {
   std::nth_element(sorted.begin(), common, sorted.end());
   constexpr double most =
       2;  // a contact that opens and closes must not make a stone heavy and light by turns
-  for (Index k = 0; k < own.size(); ++k) {
+#pragma omp parallel for schedule(static) if (c.size() > worth_sharing)
+  for (int i = 0; i < c.size(); ++i) {
+    const Index k = static_cast<Index>(i);
     const double now = c.inertial_mass[k] / c.mass[k];
-    const double wanted = model.scaled_share > 0 ? std::max(1.0, std::pow(*common / own[k], 2)) : 1.0;
-    if (wanted != now) scale_inertia(state, static_cast<int>(k), std::clamp(wanted / now, 1.0 / most, most));
+    const double wanted = std::max(1.0, std::pow(*common / own[k], 2));
+    if (wanted != now) scale_inertia(state, i, std::clamp(wanted / now, 1.0 / most, most));
   }
 }
 
-StepPlan plan_steps(const Model& model, const State& state, const Workspace& work) {
-  const StableStep stable = stable_step(model, state, work);
+/// The rule.
+StepPlan plan(const Model& model, const State& state, const StableStep& stable) {
   const TimeStepRule& rule = model.time_step;
   if (rule.fixed) {
     if (*rule.fixed > stable.dt * (1.0 + 1e-12)) {
@@ -236,6 +265,20 @@ StepPlan plan_steps(const Model& model, const State& state, const Workspace& wor
   if (state.dt == 0) return {stable.dt, rule.shortest_interval};
   return {std::min(stable.dt, state.dt * std::pow(rule.largest_growth, rule.shortest_interval)),
           stable.steps};
+}
+
+}  // namespace
+
+StableStep stable_step(const Model& model, const State& state, const Workspace& work) {
+  return stable_step_with(model, state, work, [&](int c) { return stiffness_of(model, state, work, c); });
+}
+
+StepPlan plan_steps(const Model& model, State& state, const Workspace& work) {
+  if (model.scaled_share <= 0) return plan(model, state, stable_step(model, state, work));
+  const std::vector<DiagonalStiffness> stiffness = stiffnesses_of(model, state, work);
+  scale_inertias(model, state, work, stiffness);
+  return plan(model, state,
+              stable_step_with(model, state, work, [&](int c) { return stiffness[static_cast<Index>(c)]; }));
 }
 
 }  // namespace trackbed

@@ -42,13 +42,11 @@ struct StepPlan {
 /// it can make at its farthest point; and the kinematic limit of the fastest.
 StableStep stable_step(const Model& model, const State& state, const Workspace& work);
 
-/// Differential density scaling: raises the inertia, not the weight, of stones whose own stable step is
-/// shorter than that of the share Conditions::scaled_share of all stones, until it is that. For the way to
-/// rest only: time and speeds mean nothing while it lasts.
-void scale_step(const Model& model, State& state, const Workspace& work);
-
-/// The steps to take next, by the rule: stable, not grown too fast, or the user's. Throws RunError when the
-/// user's is above the stable one.
-StepPlan plan_steps(const Model& model, const State& state, const Workspace& work);
+/// The steps to take next, by the rule: stable, not grown too fast, or the user's. Where a share of the
+/// stones is asked for (Conditions::scaled_share), differential density scaling comes first: it raises the
+/// inertia, not the weight, of stones whose own stable step is shorter than that of this share of all stones,
+/// until it is that. For the way to rest only: time and speeds mean nothing while it lasts. Throws RunError
+/// when the user's step is above the stable one.
+StepPlan plan_steps(const Model& model, State& state, const Workspace& work);
 
 }  // namespace trackbed

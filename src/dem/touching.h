@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/sums.h"
 #include "dem/laws/table.h"
 #include "dem/model.h"
 #include "dem/state.h"
@@ -118,6 +119,21 @@ void visit_touching(const Model& model, const State& state, Visit&& visit) {
     for (const ClumpPair& pair : block.pairs) visit_pair(model, state, block, pair, visit);
   for (const WallBlock& block : state.wall_blocks)
     for (const WallPair& pair : block.pairs) visit_pair(model, state, block, pair, visit);
+}
+
+/// The sum of what `add(sum, t)` adds for each touching contact t, by all threads; the same bits for any
+/// number of them.
+template <class Sum, class Add>
+Sum sum_of_touching(const Model& model, const State& state, Add&& add) {
+  const auto of_blocks = [&](const auto& blocks) {
+    return sum_by_runs<Sum>(blocks.size(), [&](Sum& sum, std::size_t b) {
+      for (const auto& pair : blocks[b].pairs)
+        visit_pair(model, state, blocks[b], pair, [&](const Touching& t) { add(sum, t); });
+    });
+  };
+  Sum sum = of_blocks(state.pair_blocks);
+  sum += of_blocks(state.wall_blocks);
+  return sum;
 }
 
 }  // namespace trackbed

@@ -8,13 +8,44 @@ namespace trackbed {
 
 using Index = std::size_t;
 
+namespace {
+
+int touching_points(const ContactMemory& memory) {
+  return memory.touches();
+}
+int touching_points(const WallMemory& memory) {
+  return static_cast<int>(std::ranges::count_if(memory.points, &ContactMemory::touches));
+}
+
+/// Adds those of all blocks, of which nothing but the touch needs to be known.
+template <class Block>
+void count(const std::vector<Block>& blocks, int ContactCounts::*contacts, int ContactCounts::*pairs,
+           ContactCounts& counts) {
+  counts += sum_by_runs<ContactCounts>(blocks.size(), [&](ContactCounts& sum, Index b) {
+    for (const auto& pair : blocks[b].pairs) {
+      int points = 0;
+      for (int k = pair.first; k < pair.first + pair.count; ++k)
+        points += touching_points(blocks[b].memory[static_cast<Index>(k)]);
+      sum.*contacts += points;
+      sum.*pairs += points > 0 ? 1 : 0;
+    }
+  });
+}
+
+}  // namespace
+
+ContactCounts& ContactCounts::operator+=(const ContactCounts& other) {
+  stone += other.stone;
+  wall += other.wall;
+  stone_pairs += other.stone_pairs;
+  wall_pairs += other.wall_pairs;
+  return *this;
+}
+
 ContactCounts contact_counts(const Simulation& sim) {
   ContactCounts counts;
-  for (const BodyPair& pair : pairs_in_touch(sim)) {
-    const bool with_wall = pair.wall >= 0;
-    (with_wall ? counts.wall : counts.stone) += pair.contacts;
-    ++(with_wall ? counts.wall_pairs : counts.stone_pairs);
-  }
+  count(sim.state.pair_blocks, &ContactCounts::stone, &ContactCounts::stone_pairs, counts);
+  count(sim.state.wall_blocks, &ContactCounts::wall, &ContactCounts::wall_pairs, counts);
   return counts;
 }
 
@@ -37,12 +68,10 @@ int rattlers(const Simulation& sim) {
 }
 
 double mean_contact_force(const Simulation& sim) {
-  double sum = 0;
-  int n = 0;
-  visit_touching(sim.model, sim.state, [&](const Touching& t) {
-    sum += t.force().norm();
-    ++n;
-  });
+  const ContactCounts counts = contact_counts(sim);
+  const int n = counts.stone + counts.wall;
+  const double sum = sum_of_touching<double>(
+      sim.model, sim.state, [](double& forces, const Touching& t) { forces += t.force().norm(); });
   return n > 0 ? sum / n : 0.0;
 }
 

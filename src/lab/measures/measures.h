@@ -9,6 +9,7 @@ namespace trackbed {
 struct ContactCounts {
   int stone = 0, wall = 0;              // contacts of pebbles, between stones and with walls or bodies
   int stone_pairs = 0, wall_pairs = 0;  // bodies in touch
+  ContactCounts& operator+=(const ContactCounts& other);
 };
 ContactCounts contact_counts(const Simulation& sim);
 

@@ -96,6 +96,12 @@ TEST(Measures, TwoPebblesOfOnePairAreTwoContactsAndOnePair) {
   EXPECT_EQ(value_of(sim, "contacts_per_stone"), 2);
   EXPECT_EQ(value_of(sim, "neighbours_per_stone"), 1);
   EXPECT_EQ(value_of(sim, "pebbles"), 4);
+  scenes::add_plane(sim, {0, 0, -0.0199}, Vec3::UnitZ());
+  sim.changed();
+  EXPECT_EQ(value_of(sim, "contacts_stone"), 2);
+  EXPECT_EQ(value_of(sim, "contacts_wall"), 2);
+  EXPECT_EQ(value_of(sim, "pairs"), 2);
+  EXPECT_EQ(pairs_in_touch(sim).size(), 2u);
 }
 
 TEST(Measures, MeanStressIsThatOfTheForcesOnTheStone) {
