@@ -164,7 +164,7 @@ void list_candidates(const Model& model, const State& state, const Workspace& wo
     geometry.is_centred = geometry.is_centred && is_centred(i) && is_centred(j);
     for (Index k = static_cast<Index>(pair.first); k < static_cast<Index>(pair.first + pair.count); ++k) {
       const int a = first_a + block.keys[k].a, b = first_b + block.keys[k].b;
-      geometry.candidates.push_back({pair.i, pair.j, a, b, sum_j, properties, block.memory[k].touches()});
+      geometry.candidates.push_back({pair.i, pair.j, a, b, sum_j, properties});
     }
   }
 }

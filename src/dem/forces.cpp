@@ -18,7 +18,7 @@ using Index = std::size_t;
 
 /// A candidate in each lane and its memory; the last one stands in for those that are missing.
 struct Batch {
-  std::array<Candidate*, Lanes::size> candidate;
+  std::array<const Candidate*, Lanes::size> candidate;
   std::array<ContactMemory*, Lanes::size> memory;
   bool is_centred;  // as PairGeometry has it: nothing needs to be turned
 
@@ -168,29 +168,15 @@ ContactKinematicsOf<Lanes> kinematics_of(const Places& at, const Motions& m, dou
   return k;
 }
 
-const ContactMemory nothing;
-
-/// What each lane remembers. Where nothing touched, nothing: its own memory would have to come a long way.
-std::array<const ContactMemory*, Lanes::size> last_of(const Batch& f, unsigned touched) {
-  std::array<const ContactMemory*, Lanes::size> last;
-  for (Index k = 0; k < Lanes::size; ++k) last[k] = touched >> k & 1u ? f.memory[k] : &nothing;
-  return last;
-}
-
 /// Lets the candidates in the lanes of `present` act on their stones, in their order; returns how many touch.
 int act(const Model& model, const Batch& f, unsigned present, double dt, Workspace& work) {
   const Places at = places_of(work, f);
   const unsigned touching = present & bits(at.distance2 < at.reach * at.reach);
-  unsigned touched = 0;
-  for (Index k = 0; k < Lanes::size; ++k) touched |= static_cast<unsigned>(f.candidate[k]->touches) << k;
-  const unsigned opened = touched & present & ~touching;
+  unsigned opened = 0;
+  for (Index k = 0; k < Lanes::size; ++k) opened |= static_cast<unsigned>(f.memory[k]->touches()) << k;
+  opened &= present & ~touching;
   if ((touching | opened) == 0) return 0;
-  for (unsigned changed = (touched ^ touching) & present; changed != 0; changed &= changed - 1) {
-    bool& touches = f.candidate[static_cast<Index>(__builtin_ctz(changed))]->touches;
-    touches = !touches;
-  }
   const Motions m = motions_of(work, f, at.shift);
-  const auto last = last_of(f, touched);
   Vec3Of<Lanes> lever;
   ContactKinematicsOf<Lanes> kinematics = kinematics_of(at, m, dt, lever);
   const auto properties_and_end = [&](Index k) {
@@ -201,28 +187,21 @@ int act(const Model& model, const Batch& f, unsigned present, double dt, Workspa
     if (key % 2 != 0) return end_contacts(f, run, p, at, m, dt, work);
     with_law(p.law, [&]<class Law>() {
       if constexpr (Law::rolls) kinematics.radius = at.radius_a * (at.reach - at.radius_a) / at.reach;
-      hand_out<Law>(f, run, at.shift, respond_with<Law>(kinematics, p, lever, last, f.memory, run), p, work);
+      hand_out<Law>(f, run, at.shift, respond_with<Law>(kinematics, p, lever, f.memory, run), p, work);
     });
   });
   return __builtin_popcount(touching);
 }
 
-constexpr Index line = 64;  // of memory
-
-/// Asks for the candidates of a block that comes soon: they lie where no pattern leads the processor.
-void prefetch_candidates(const PairGeometry& geometry) {
-  const char* at = reinterpret_cast<const char*>(geometry.candidates.data());
-  for (Index k = 0; k < geometry.candidates.size() * sizeof(Candidate); k += line)
-    __builtin_prefetch(at + k, 1);
-}
-
-/// The same for what those remember that touched, of the next block.
-void prefetch_memory(const PairBlock& block, const PairGeometry& geometry) {
-  for (Index k = 0; k < geometry.candidates.size(); ++k) {
-    if (!geometry.candidates[k].touches) continue;
-    const char* at = reinterpret_cast<const char*>(&block.memory[k]);
-    for (Index part = 0; part < sizeof(ContactMemory); part += line) __builtin_prefetch(at + part, 1);
-  }
+/// Asks for the memory of a block that comes soon: it lies where no pattern leads the processor.
+void prefetch(const PairBlock& block, const PairGeometry& geometry) {
+  constexpr Index line = 64;
+  const auto lines = [](const auto& values) {
+    const char* at = reinterpret_cast<const char*>(values.data());
+    for (Index k = 0; k < values.size() * sizeof(values[0]); k += line) __builtin_prefetch(at + k, 1);
+  };
+  lines(geometry.candidates);
+  lines(block.memory);
 }
 
 [[gnu::flatten]] int block_forces(const Model& model, State& state, Workspace& work, Index b, double dt) {
@@ -257,8 +236,7 @@ int patch_forces(const Model& model, State& state, Workspace& work, Index patch,
   const Index end = static_cast<Index>(work.first_block_of_patch[patch + 1]);
   for (Index b = static_cast<Index>(work.first_block_of_patch[patch]); b < end; ++b) {
     // A block of another patch may be growing in the hands of another thread.
-    if (b + 2 < end) prefetch_candidates(work.pair_geometry[b + 2]);
-    if (b + 1 < end) prefetch_memory(state.pair_blocks[b + 1], work.pair_geometry[b + 1]);
+    if (b + 1 < end) prefetch(state.pair_blocks[b + 1], work.pair_geometry[b + 1]);
     touching += block_forces(model, state, work, b, dt);
   }
   return touching;

@@ -47,15 +47,15 @@ struct Response {
 };
 
 /// Lets a law answer the motion of contacts; `lever` leads from the centre of mass of body 1 to the
-/// contact. `last` points to what they remember. The memories in the lanes of `wanted` are brought up to
-/// date; what is worked out in the other lanes means nothing.
-template <class Law, class Pointers>
+/// contact. The memories in the lanes of `wanted` are brought up to date; what is worked out in the other
+/// lanes means nothing.
+template <class Law>
 Response respond_with(const ContactKinematicsOf<Lanes>& k, const ContactProperties& p,
-                      const Vec3Of<Lanes>& lever, const Pointers& last,
-                      const std::array<ContactMemory*, Lanes::size>& memories, unsigned wanted) {
+                      const Vec3Of<Lanes>& lever, const std::array<ContactMemory*, Lanes::size>& memories,
+                      unsigned wanted) {
   const auto load = [&](auto member) {
     Rows rows;
-    for (std::size_t n = 0; n < rows.size(); ++n) rows[n] = Row::load((last[n]->*member).data());
+    for (std::size_t n = 0; n < rows.size(); ++n) rows[n] = Row::load((memories[n]->*member).data());
     return columns_of(rows);
   };
   const auto store = [&](auto member, const Vec3Of<Lanes>& v, Lanes fourth) {

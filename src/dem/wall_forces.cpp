@@ -178,7 +178,7 @@ void respond(const Batch& f, unsigned wanted, const Touches& s, const ContactPro
   const Vec3Of<Lanes> shift = gather([&](Index n) { return motion(n).shift; }, unused);
   std::array<ContactMemory*, Lanes::size> memories;
   for (Index n = 0; n < memories.size(); ++n) memories[n] = f[n]->memory;
-  const Response r = respond_with<Law>(k, p, lever, memories, memories, wanted);
+  const Response r = respond_with<Law>(k, p, lever, memories, wanted);
   const Vec3Of<Lanes> on_wall = r.moment - shift.cross(r.force);
   for (int lane = 0; lane < Lanes::size; ++lane) {
     if (!(wanted >> lane & 1u)) continue;

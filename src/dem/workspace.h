@@ -34,8 +34,6 @@ struct Candidate {
   int a, b;        // pebbles, in Workspace::pebbles
   int sum_j;       // where in Workspace::sums the effect on j goes; that on i goes to i
   int properties;  // of the pair of materials, in PairTable
-  bool touches;  // as its memory says, which is not read as long as both say no: it would be most of the way
-                 // to memory in a bed of balls
 };
 
 /// Tells when a block must look at its pairs: not before one of its own stones has gone far enough, whatever
