@@ -97,40 +97,41 @@ std::optional<std::string> what_is_wrong(const Model& model, const Clumps& c, co
                      1e3 * t.overlap, 100 * t.overlap / radius, 100 * limits.overlap);
 }
 
-/// The first of so many things of which something is wrong, whoever finds it; `n` when all are sound.
+/// The first of n things of which something is wrong, whoever finds it.
 template <class IsWrong>
-int first_wrong(int n, int worth_sharing, const IsWrong& is_wrong) {
-  int first = n;
-#pragma omp parallel for schedule(static) reduction(min : first) if (n > worth_sharing)
-  for (int k = 0; k < n; ++k)
-    if (k < first && is_wrong(k)) first = k;
-  return first;
+std::optional<Index> first_wrong(Index n, const IsWrong& is_wrong, Index length) {
+  using First = std::optional<Index>;
+  return joined_by_runs<First>(
+      n,
+      [&](First& first, Index k) {
+        if (!first && is_wrong(k)) first = k;
+      },
+      [](const First& a, const First& b) { return a ? a : b; }, length);
 }
 
 void inspect_stones(const Model& model, const State& state, const Workspace& work) {
-  const auto wrong = [&](int c) { return what_is_wrong(model, state.clumps, work, static_cast<Index>(c)); };
-  const int n = state.clumps.size();
-  const int first = first_wrong(n, 1000, [&](int c) { return wrong(c).has_value(); });
-  if (first < n) fail(state, static_cast<Index>(first), *wrong(first));
+  const auto wrong = [&](Index c) { return what_is_wrong(model, state.clumps, work, c); };
+  const auto is_wrong = [&](Index c) { return wrong(c).has_value(); };
+  if (const auto first = first_wrong(state.clumps.id.size(), is_wrong, run_length))
+    fail(state, *first, *wrong(*first));
 }
 
 template <class Block>
 void inspect_contacts(const Model& model, const State& state, const std::vector<Block>& blocks) {
-  const auto each_wrong = [&](int block, const auto& tell) {
-    const Block& b = blocks[static_cast<Index>(block)];
+  const auto each_wrong = [&](Index block, const auto& tell) {
+    const Block& b = blocks[block];
     for (const auto& pair : b.pairs)
       visit_pair(model, state, b, pair, [&](const Touching& t) {
         if (const auto what = what_is_wrong(model, state.clumps, t)) tell(t, *what);
       });
   };
-  const int n = static_cast<int>(blocks.size());
-  const int first = first_wrong(n, 16, [&](int block) {
+  const auto has_wrong = [&](Index block) {
     bool is_wrong = false;
     each_wrong(block, [&](const Touching&, const std::string&) { is_wrong = true; });
     return is_wrong;
-  });
-  if (first < n)
-    each_wrong(first, [&](const Touching& t, const std::string& what) {
+  };
+  if (const auto first = first_wrong(blocks.size(), has_wrong, blocks_in_run))
+    each_wrong(*first, [&](const Touching& t, const std::string& what) {
       fail(state, static_cast<Index>(t.clump_1), what);
     });
 }

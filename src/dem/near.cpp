@@ -5,6 +5,8 @@
 #include <numeric>
 #include <utility>
 
+#include "base/runs.h"
+
 namespace trackbed {
 namespace {
 
@@ -118,13 +120,12 @@ template <class Append>
 Pairs for_all(int stones, const Append& append) {
   constexpr int run = 1024;  // consecutive stones that one thread takes at a time
   std::vector<Pairs> of_run(static_cast<Index>((stones + run - 1) / run));
-#pragma omp parallel for schedule(dynamic) if (of_run.size() > 1)
-  for (Index r = 0; r < of_run.size(); ++r) {
+  for_each_run(of_run.size(), [&](Index r) {
     Pairs own;
     const int first = static_cast<int>(r) * run, end = std::min(first + run, stones);
     for (int i = first; i < end; ++i) append(i, own);
     of_run[r] = std::move(own);
-  }
+  });
   if (of_run.size() == 1) return std::move(of_run[0]);
   Pairs pairs;
   Index n = 0;

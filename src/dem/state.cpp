@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/hash.h"
+#include "base/runs.h"
 #include "dem/rotation.h"
 
 namespace trackbed {
@@ -58,11 +59,7 @@ double equal_volume_radius(const Model& model, const Clumps& clumps, std::size_t
 
 std::vector<double> equal_volume_radii(const Model& model, const Clumps& clumps) {
   std::vector<double> radii(clumps.id.size());
-#pragma omp parallel for schedule(static) if (clumps.size() > 1000)
-  for (int i = 0; i < clumps.size(); ++i) {
-    const Index k = static_cast<Index>(i);
-    radii[k] = equal_volume_radius(model, clumps, k);
-  }
+  for_each_by_runs(radii.size(), [&](Index k) { radii[k] = equal_volume_radius(model, clumps, k); });
   return radii;
 }
 

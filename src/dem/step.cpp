@@ -48,7 +48,7 @@ void find_contacts(const Model& model, State& state, Workspace& work) {
   work = {};
   prepare(model, state, work);
   rebuild_pairs(model, state, work);
-  visit_touching(model, state, [&](const Touching&) { ++work.touching; });
+  work.touching = sum_of_touching<int>(model, state, [](int& sum, const Touching&) { ++sum; });
 }
 
 void step(const Model& model, State& state, Workspace& work) {

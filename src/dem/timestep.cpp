@@ -14,8 +14,6 @@ namespace {
 
 using Index = std::size_t;
 
-constexpr int worth_sharing = 64;  // stones
-
 /// Adds a contact's share: k_n along the normal, k_s across it, the rolling spring across it, and its
 /// dashpots.
 void add_contact(const Touching& t, const Vec3& lever, const Mat3& axes, DiagonalStiffness& k) {
@@ -101,22 +99,19 @@ Pace livelier(const Pace& a, const Pace& b) {
   pace.acceleration = std::max(a.acceleration, b.acceleration);
   return pace;
 }
-#pragma omp declare reduction(livelier:Pace \
-                              : omp_out = livelier(omp_out, omp_in)) initializer(omp_priv = Pace())
 
-Pace pace_of_clump(const Model& model, const State& state, const Workspace& work, int clump) {
+Pace pace_of_clump(const Model& model, const State& state, const Workspace& work, Index i) {
   const Clumps& c = state.clumps;
-  const Index i = static_cast<Index>(clump);
   return {.length = c.scale[i] * model.templates[static_cast<Index>(c.shape[i])].smallest_radius,
           .speed = c.velocity[i].norm() + work.bound[i] * c.angular_velocity[i].norm(),
           .acceleration = (c.force[i] / c.mass[i] + model.gravity).norm() * (c.mass[i] / c.inertial_mass[i]),
-          .clump = clump};
+          .clump = static_cast<int>(i)};
 }
 
 Pace pace_of(const Model& model, const State& state, const Workspace& work) {
-  Pace pace;
-#pragma omp parallel for schedule(static) reduction(livelier : pace) if (state.clumps.size() > worth_sharing)
-  for (int c = 0; c < state.clumps.size(); ++c) pace = livelier(pace, pace_of_clump(model, state, work, c));
+  Pace pace = joined_by_runs<Pace>(
+      state.clumps.id.size(),
+      [&](Pace& all, Index c) { all = livelier(all, pace_of_clump(model, state, work, c)); }, livelier);
   for (Index w = 0; w < state.walls.size(); ++w) {
     const WallState& wall = state.walls[w];
     if (!wall.present) continue;
@@ -144,6 +139,85 @@ int steps_for(const TimeStepRule& rule, const Pace& pace, double dt) {
   const double steps = std::floor(way / (speed * dt));
   if (!(steps > rule.shortest_interval)) return rule.shortest_interval;
   return steps < rule.longest_interval ? static_cast<int>(steps) : rule.longest_interval;
+}
+
+/// Of two limits of stones the shorter; of equal ones that of the first stone, whoever is asked first.
+StableStep shorter(const StableStep& a, const StableStep& b) {
+  return b.dt < a.dt || (b.dt == a.dt && b.clump < a.clump) ? b : a;
+}
+
+/// Of each stone: a look at all contacts that both the scaling and the step want.
+std::vector<DiagonalStiffness> stiffnesses_of(const Model& model, const State& state, const Workspace& work) {
+  std::vector<DiagonalStiffness> all(state.clumps.id.size());
+  for_each_by_runs(all.size(),
+                   [&](Index c) { all[c] = stiffness_of(model, state, work, static_cast<int>(c)); });
+  return all;
+}
+
+/// The stable step with what `stiffness(c)` tells of each stone.
+template <class StiffnessOf>
+StableStep stable_step_with(const Model& model, const State& state, const Workspace& work,
+                            const StiffnessOf& stiffness) {
+  StableStep step = joined_by_runs<StableStep>(
+      state.clumps.id.size(),
+      [&](StableStep& all, Index c) {
+        const double limit = limit_of_clump(model, state, work, c, stiffness(c));
+        all = shorter(all, {limit, static_cast<int>(c), false, 0});
+      },
+      shorter);
+  for (Index w = 0; w < model.walls.size(); ++w) {
+    if (!model.walls[w].body || !state.walls[w].present) continue;
+    const double limit = limit_of_body(model, state, work, w);
+    if (limit < step.dt) step = {limit, -1, false, 0};
+  }
+  step.dt *= model.time_step.safety;
+
+  const Pace pace = pace_of(model, state, work);
+  const StableStep kinematic = kinematic_step(model, pace);
+  if (kinematic.dt < step.dt) step = kinematic;
+  step.steps = steps_for(model.time_step, pace, step.dt);
+  return step;
+}
+
+/// Differential density scaling, as plan_steps has it.
+void scale_inertias(const Model& model, State& state, const Workspace& work,
+                    const std::vector<DiagonalStiffness>& stiffness) {
+  Clumps& c = state.clumps;
+  if (c.id.empty()) return;
+  std::vector<double> own(c.id.size());  // limits of the stones' true masses [s]
+  for_each_by_runs(own.size(), [&](Index k) {
+    own[k] = limit_of_clump(model, state, work, k, stiffness[k]) * std::sqrt(c.mass[k] / c.inertial_mass[k]);
+  });
+  std::vector<double> sorted = own;
+  const auto common = sorted.begin() + static_cast<std::ptrdiff_t>(model.scaled_share *
+                                                                   static_cast<double>(sorted.size() - 1));
+  std::nth_element(sorted.begin(), common, sorted.end());
+  // A contact that opens and closes must not make a stone heavy and light by turns.
+  constexpr double most = 2;
+  for_each_by_runs(own.size(), [&](Index k) {
+    const double now = c.inertial_mass[k] / c.mass[k];
+    const double wanted = std::max(1.0, std::pow(*common / own[k], 2));
+    if (wanted != now) scale_inertia(state, static_cast<int>(k), std::clamp(wanted / now, 1.0 / most, most));
+  });
+}
+
+/// The rule.
+StepPlan plan(const Model& model, const State& state, const StableStep& stable) {
+  const TimeStepRule& rule = model.time_step;
+  if (rule.fixed) {
+    if (*rule.fixed > stable.dt * (1.0 + 1e-12)) {
+      const std::string who =
+          stable.clump < 0 ? std::string("a body")
+                           : fmt::format("stone {}", state.clumps.id[static_cast<Index>(stable.clump)]);
+      throw RunError(fmt::format(
+          "the chosen time step {:.3g} s is above the stable one, {:.3g} s, that {} allows by its {}",
+          *rule.fixed, stable.dt, who, stable.is_kinematic ? "speed" : "stiffness"));
+    }
+    return {*rule.fixed, stable.steps};
+  }
+  if (state.dt == 0) return {stable.dt, rule.shortest_interval};
+  return {std::min(stable.dt, state.dt * std::pow(rule.largest_growth, rule.shortest_interval)),
+          stable.steps};
 }
 
 }  // namespace
@@ -179,106 +253,16 @@ DiagonalStiffness stiffness_of_wall(const Model& model, const State& state, cons
   return k;
 }
 
-namespace {
-
-/// Of two limits of stones the shorter; of equal ones that of the first stone, whoever is asked first.
-StableStep shorter(const StableStep& a, const StableStep& b) {
-  return b.dt < a.dt || (b.dt == a.dt && b.clump < a.clump) ? b : a;
-}
-#pragma omp declare reduction(shorter:StableStep \
-                              : omp_out = shorter(omp_out, omp_in)) initializer(omp_priv = omp_orig)
-
-/// Of each stone: a look at all contacts that both the scaling and the step want.
-std::vector<DiagonalStiffness> stiffnesses_of(const Model& model, const State& state, const Workspace& work) {
-  std::vector<DiagonalStiffness> all(state.clumps.id.size());
-#pragma omp parallel for schedule(static) if (state.clumps.size() > worth_sharing)
-  for (int c = 0; c < state.clumps.size(); ++c)
-    all[static_cast<Index>(c)] = stiffness_of(model, state, work, c);
-  return all;
-}
-
-/// The stable step with what `stiffness(c)` tells of each stone.
-template <class StiffnessOf>
-StableStep stable_step_with(const Model& model, const State& state, const Workspace& work,
-                            const StiffnessOf& stiffness) {
-  StableStep step{std::numeric_limits<double>::infinity(), -1, false, 0};
-  const Clumps& c = state.clumps;
-#pragma omp parallel for schedule(static) reduction(shorter : step) if (c.size() > worth_sharing)
-  for (int i = 0; i < c.size(); ++i) {
-    const double limit = limit_of_clump(model, state, work, static_cast<Index>(i), stiffness(i));
-    step = shorter(step, {limit, i, false, 0});
-  }
-  for (Index w = 0; w < model.walls.size(); ++w) {
-    if (!model.walls[w].body || !state.walls[w].present) continue;
-    const double limit = limit_of_body(model, state, work, w);
-    if (limit < step.dt) step = {limit, -1, false, 0};
-  }
-  step.dt *= model.time_step.safety;
-
-  const Pace pace = pace_of(model, state, work);
-  const StableStep kinematic = kinematic_step(model, pace);
-  if (kinematic.dt < step.dt) step = kinematic;
-  step.steps = steps_for(model.time_step, pace, step.dt);
-  return step;
-}
-
-/// Differential density scaling, as plan_steps has it.
-void scale_inertias(const Model& model, State& state, const Workspace& work,
-                    const std::vector<DiagonalStiffness>& stiffness) {
-  Clumps& c = state.clumps;
-  if (c.id.empty()) return;
-  std::vector<double> own(c.id.size());  // limits of the stones' true masses [s]
-#pragma omp parallel for schedule(static) if (c.size() > worth_sharing)
-  for (int i = 0; i < c.size(); ++i) {
-    const Index k = static_cast<Index>(i);
-    own[k] = limit_of_clump(model, state, work, k, stiffness[k]) * std::sqrt(c.mass[k] / c.inertial_mass[k]);
-  }
-  std::vector<double> sorted = own;
-  const auto common = sorted.begin() + static_cast<std::ptrdiff_t>(model.scaled_share *
-                                                                   static_cast<double>(sorted.size() - 1));
-  std::nth_element(sorted.begin(), common, sorted.end());
-  constexpr double most =
-      2;  // a contact that opens and closes must not make a stone heavy and light by turns
-#pragma omp parallel for schedule(static) if (c.size() > worth_sharing)
-  for (int i = 0; i < c.size(); ++i) {
-    const Index k = static_cast<Index>(i);
-    const double now = c.inertial_mass[k] / c.mass[k];
-    const double wanted = std::max(1.0, std::pow(*common / own[k], 2));
-    if (wanted != now) scale_inertia(state, i, std::clamp(wanted / now, 1.0 / most, most));
-  }
-}
-
-/// The rule.
-StepPlan plan(const Model& model, const State& state, const StableStep& stable) {
-  const TimeStepRule& rule = model.time_step;
-  if (rule.fixed) {
-    if (*rule.fixed > stable.dt * (1.0 + 1e-12)) {
-      const std::string who =
-          stable.clump < 0 ? std::string("a body")
-                           : fmt::format("stone {}", state.clumps.id[static_cast<Index>(stable.clump)]);
-      throw RunError(fmt::format(
-          "the chosen time step {:.3g} s is above the stable one, {:.3g} s, that {} allows by its {}",
-          *rule.fixed, stable.dt, who, stable.is_kinematic ? "speed" : "stiffness"));
-    }
-    return {*rule.fixed, stable.steps};
-  }
-  if (state.dt == 0) return {stable.dt, rule.shortest_interval};
-  return {std::min(stable.dt, state.dt * std::pow(rule.largest_growth, rule.shortest_interval)),
-          stable.steps};
-}
-
-}  // namespace
-
 StableStep stable_step(const Model& model, const State& state, const Workspace& work) {
-  return stable_step_with(model, state, work, [&](int c) { return stiffness_of(model, state, work, c); });
+  return stable_step_with(model, state, work,
+                          [&](Index c) { return stiffness_of(model, state, work, static_cast<int>(c)); });
 }
 
 StepPlan plan_steps(const Model& model, State& state, const Workspace& work) {
   if (model.scaled_share <= 0) return plan(model, state, stable_step(model, state, work));
   const std::vector<DiagonalStiffness> stiffness = stiffnesses_of(model, state, work);
   scale_inertias(model, state, work, stiffness);
-  return plan(model, state,
-              stable_step_with(model, state, work, [&](int c) { return stiffness[static_cast<Index>(c)]; }));
+  return plan(model, state, stable_step_with(model, state, work, [&](Index c) { return stiffness[c]; }));
 }
 
 }  // namespace trackbed

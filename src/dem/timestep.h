@@ -2,7 +2,7 @@
 // all its contacts, times a safety factor, and a limit on how far anything travels in a step.
 #pragma once
 
-#include <vector>
+#include <limits>
 
 #include "dem/model.h"
 #include "dem/state.h"
@@ -27,10 +27,10 @@ DiagonalStiffness stiffness_of_wall(const Model& model, const State& state, cons
 
 /// What limits the step.
 struct StableStep {
-  double dt;          // [s]
-  int clump;          // the stone that limits it; -1: a body
-  bool is_kinematic;  // by its motion rather than its stiffness
-  int steps;          // for which it may be kept: contacts hardly change meanwhile
+  double dt = std::numeric_limits<double>::infinity();  // [s]
+  int clump = -1;                                       // the stone that limits it; -1: a body
+  bool is_kinematic = false;                            // by its motion rather than its stiffness
+  int steps = 0;  // for which it may be kept: contacts hardly change meanwhile
 };
 
 struct StepPlan {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/sums.h"
+#include "base/runs.h"
 #include "dem/laws/table.h"
 #include "dem/model.h"
 #include "dem/state.h"
@@ -121,15 +121,19 @@ void visit_touching(const Model& model, const State& state, Visit&& visit) {
     for (const WallPair& pair : block.pairs) visit_pair(model, state, block, pair, visit);
 }
 
+/// Blocks of pairs that one thread takes at a time.
+constexpr std::size_t blocks_in_run = 4;
+
 /// The sum of what `add(sum, t)` adds for each touching contact t, by all threads; the same bits for any
 /// number of them.
 template <class Sum, class Add>
 Sum sum_of_touching(const Model& model, const State& state, Add&& add) {
   const auto of_blocks = [&](const auto& blocks) {
-    return sum_by_runs<Sum>(blocks.size(), [&](Sum& sum, std::size_t b) {
+    const auto add_block = [&](Sum& sum, std::size_t b) {
       for (const auto& pair : blocks[b].pairs)
         visit_pair(model, state, blocks[b], pair, [&](const Touching& t) { add(sum, t); });
-    });
+    };
+    return sum_by_runs<Sum>(blocks.size(), add_block, blocks_in_run);
   };
   Sum sum = of_blocks(state.pair_blocks);
   sum += of_blocks(state.wall_blocks);

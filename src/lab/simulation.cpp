@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/runs.h"
 
 namespace trackbed {
 
@@ -42,8 +43,9 @@ void Simulation::drive(std::size_t wall, const Vec3& velocity) {
 }
 
 void Simulation::stop_stones() {
-#pragma omp parallel for schedule(static) if (state.clumps.size() > 1000)
-  for (int c = 0; c < state.clumps.size(); ++c) set_motion(state, c, Vec3::Zero(), Vec3::Zero());
+  for_each_by_runs(state.clumps.id.size(), [&](std::size_t c) {
+    set_motion(state, static_cast<int>(c), Vec3::Zero(), Vec3::Zero());
+  });
 }
 
 void Simulation::restore(const Conditions& before) {

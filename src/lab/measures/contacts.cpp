@@ -21,7 +21,7 @@ int touching_points(const WallMemory& memory) {
 template <class Block>
 void count(const std::vector<Block>& blocks, int ContactCounts::*contacts, int ContactCounts::*pairs,
            ContactCounts& counts) {
-  counts += sum_by_runs<ContactCounts>(blocks.size(), [&](ContactCounts& sum, Index b) {
+  const auto add_block = [&](ContactCounts& sum, Index b) {
     for (const auto& pair : blocks[b].pairs) {
       int points = 0;
       for (int k = pair.first; k < pair.first + pair.count; ++k)
@@ -29,8 +29,29 @@ void count(const std::vector<Block>& blocks, int ContactCounts::*contacts, int C
       sum.*contacts += points;
       sum.*pairs += points > 0 ? 1 : 0;
     }
-  });
+  };
+  counts += sum_by_runs<ContactCounts>(blocks.size(), add_block, blocks_in_run);
 }
+
+/// Of numbers, with how many they are.
+struct Sum {
+  double value = 0;
+  int n = 0;
+  Sum& operator+=(const Sum& other) {
+    value += other.value;
+    n += other.n;
+    return *this;
+  }
+};
+
+/// A "sum" that is its largest member.
+struct Largest {
+  double value = 0;
+  Largest& operator+=(const Largest& other) {
+    value = std::max(value, other.value);
+    return *this;
+  }
+};
 
 }  // namespace
 
@@ -68,27 +89,24 @@ int rattlers(const Simulation& sim) {
 }
 
 double mean_contact_force(const Simulation& sim) {
-  const ContactCounts counts = contact_counts(sim);
-  const int n = counts.stone + counts.wall;
-  const double sum = sum_of_touching<double>(
-      sim.model, sim.state, [](double& forces, const Touching& t) { forces += t.force().norm(); });
-  return n > 0 ? sum / n : 0.0;
+  const Sum sum = sum_of_touching<Sum>(sim.model, sim.state, [](Sum& all, const Touching& t) {
+    all += {t.force().norm(), 1};
+  });
+  return sum.n > 0 ? sum.value / sum.n : 0.0;
 }
 
 double largest_contact_force(const Simulation& sim) {
-  double largest = 0;
-  visit_touching(sim.model, sim.state,
-                 [&](const Touching& t) { largest = std::max(largest, t.force().norm()); });
-  return largest;
+  return sum_of_touching<Largest>(sim.model, sim.state,
+                                  [](Largest& all, const Touching& t) { all += {t.force().norm()}; })
+      .value;
 }
 
 double largest_overlap(const Simulation& sim) {
-  double largest = 0;
   const std::vector<double> radii = equal_volume_radii(sim.model, sim.state.clumps);
-  visit_touching(sim.model, sim.state, [&](const Touching& t) {
-    largest = std::max(largest, t.overlap / smaller_of_stones(t, [&](Index i) { return radii[i]; }));
-  });
-  return largest;
+  const auto add = [&](Largest& all, const Touching& t) {
+    all += {t.overlap / smaller_of_stones(t, [&](Index i) { return radii[i]; })};
+  };
+  return sum_of_touching<Largest>(sim.model, sim.state, add).value;
 }
 
 std::vector<int> force_histogram(const Simulation& sim, const std::vector<double>& limits) {

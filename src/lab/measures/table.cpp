@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "base/error.h"
 #include "io/nearest.h"
@@ -30,26 +31,38 @@ std::vector<Measure> stone_measures() {
   };
 }
 
+/// A measure that `value(counts)` makes of the numbers of contacts, which are counted once for it.
+template <class Value>
+Measure of_counts(std::string name, std::string meaning, Value value) {
+  return {std::move(name), Dimension::none, std::move(meaning),
+          [value](Sim s) { return value(contact_counts(s)); }};
+}
+
+template <class Value>
+Measure of_counts_per_stone(std::string name, std::string meaning, Value value) {
+  return {std::move(name), Dimension::none, std::move(meaning),
+          [value](Sim s) { return per_stone(s, value(contact_counts(s))); }};
+}
+
 std::vector<Measure> contact_measures() {
   using enum Dimension;
+  using Counts = const ContactCounts&;
   return {
-      {"contacts", none, "touching pebbles: of two stones, and of a stone with a wall or body",
-       [](Sim s) { return contact_counts(s).stone + contact_counts(s).wall; }},
-      {"contacts_stone", none, "touching pebbles of two stones",
-       [](Sim s) { return contact_counts(s).stone; }},
-      {"contacts_wall", none, "touches of pebbles with walls and bodies",
-       [](Sim s) { return contact_counts(s).wall; }},
-      {"pairs", none, "bodies in touch, each pair once however many pebbles touch",
-       [](Sim s) { return contact_counts(s).stone_pairs + contact_counts(s).wall_pairs; }},
-      {"coordination_number", none, "contacts / stones, each contact counted once",
-       [](Sim s) { return per_stone(s, contact_counts(s).stone + contact_counts(s).wall); }},
-      {"coordination_number_stones", none, "contacts_stone / stones, each contact counted once",
-       [](Sim s) { return per_stone(s, contact_counts(s).stone); }},
-      {"contacts_per_stone", none,
-       "mean number of contacts a stone has: (2 contacts_stone + contacts_wall) / stones",
-       [](Sim s) { return per_stone(s, 2 * contact_counts(s).stone + contact_counts(s).wall); }},
-      {"neighbours_per_stone", none, "mean number of bodies that a stone touches",
-       [](Sim s) { return per_stone(s, 2 * contact_counts(s).stone_pairs + contact_counts(s).wall_pairs); }},
+      of_counts("contacts", "touching pebbles: of two stones, and of a stone with a wall or body",
+                [](Counts c) { return c.stone + c.wall; }),
+      of_counts("contacts_stone", "touching pebbles of two stones", [](Counts c) { return c.stone; }),
+      of_counts("contacts_wall", "touches of pebbles with walls and bodies", [](Counts c) { return c.wall; }),
+      of_counts("pairs", "bodies in touch, each pair once however many pebbles touch",
+                [](Counts c) { return c.stone_pairs + c.wall_pairs; }),
+      of_counts_per_stone("coordination_number", "contacts / stones, each contact counted once",
+                          [](Counts c) { return c.stone + c.wall; }),
+      of_counts_per_stone("coordination_number_stones", "contacts_stone / stones, each contact counted once",
+                          [](Counts c) { return c.stone; }),
+      of_counts_per_stone("contacts_per_stone",
+                          "mean number of contacts a stone has: (2 contacts_stone + contacts_wall) / stones",
+                          [](Counts c) { return 2 * c.stone + c.wall; }),
+      of_counts_per_stone("neighbours_per_stone", "mean number of bodies that a stone touches",
+                          [](Counts c) { return 2 * c.stone_pairs + c.wall_pairs; }),
       {"rattlers", none, "stones that touch fewer than two other bodies", rattlers},
       {"contact_force_mean", force, "magnitude of the elastic contact force, mean of all contacts",
        mean_contact_force},

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "base/error.h"
+#include "base/runs.h"
 #include "dem/touching.h"
 #include "lab/in_touch.h"
 
@@ -65,16 +66,14 @@ void Parting::control(Simulation& sim) const {
   if (sim.state.step % stop_every == 0) return sim.stop_stones();
   const Clumps& c = sim.state.clumps;
   const double limit = 0.01 * smallest_ / sim.state.planned_dt;
-  const int n = c.size();
-#pragma omp parallel for schedule(static) if (n > 1000)
-  for (int stone = 0; stone < n; ++stone) {
-    const auto k = static_cast<std::size_t>(stone);
+  for_each_by_runs(c.id.size(), [&](std::size_t k) {
     const double bound =
         c.scale[k] * sim.model.templates[static_cast<std::size_t>(c.shape[k])].bounding_radius;
     const double speed = c.velocity[k].norm() + bound * c.angular_velocity[k].norm();
-    if (speed <= limit) continue;
-    set_motion(sim.state, stone, limit / speed * c.velocity[k], limit / speed * c.angular_velocity[k]);
-  }
+    if (speed <= limit) return;
+    set_motion(sim.state, static_cast<int>(k), limit / speed * c.velocity[k],
+               limit / speed * c.angular_velocity[k]);
+  });
 }
 
 bool Parting::is_done(const Simulation& sim, double mean_overlap, double time_limit) {
