@@ -99,20 +99,20 @@ std::optional<std::string> what_is_wrong(const Model& model, const Clumps& c, co
 
 /// The first of n things of which something is wrong, whoever finds it.
 template <class IsWrong>
-std::optional<Index> first_wrong(Index n, const IsWrong& is_wrong, Index length) {
+std::optional<Index> first_wrong(Index n, const IsWrong& is_wrong, Index least) {
   using First = std::optional<Index>;
   return joined_by_runs<First>(
       n,
       [&](First& first, Index k) {
         if (!first && is_wrong(k)) first = k;
       },
-      [](const First& a, const First& b) { return a ? a : b; }, length);
+      [](const First& a, const First& b) { return a ? a : b; }, least);
 }
 
 void inspect_stones(const Model& model, const State& state, const Workspace& work) {
   const auto wrong = [&](Index c) { return what_is_wrong(model, state.clumps, work, c); };
   const auto is_wrong = [&](Index c) { return wrong(c).has_value(); };
-  if (const auto first = first_wrong(state.clumps.id.size(), is_wrong, run_length))
+  if (const auto first = first_wrong(state.clumps.id.size(), is_wrong, Runs::least_length))
     fail(state, *first, *wrong(*first));
 }
 

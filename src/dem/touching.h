@@ -121,7 +121,7 @@ void visit_touching(const Model& model, const State& state, Visit&& visit) {
     for (const WallPair& pair : block.pairs) visit_pair(model, state, block, pair, visit);
 }
 
-/// Blocks of pairs that one thread takes at a time.
+/// Blocks of pairs that one thread takes at a time, at least.
 constexpr std::size_t blocks_in_run = 4;
 
 /// The sum of what `add(sum, t)` adds for each touching contact t, by all threads; the same bits for any

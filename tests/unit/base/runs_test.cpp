@@ -25,13 +25,13 @@ TEST(Runs, SumToTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Runs, SumEveryThingOnce) {
-  for (std::size_t n : {0, 1, 63, 64, 65, 1000})
+  for (std::size_t n : {0, 1, 63, 64, 65, 1000, 4096, 4097})
     EXPECT_EQ(sum_by_runs<std::size_t>(n, [](std::size_t& sum, std::size_t k) { sum += k + 1; }),
               n * (n + 1) / 2);
 }
 
 TEST(Runs, DoEveryThingOnce) {
-  for (std::size_t n : {0, 1, 64, 65, 1000}) {
+  for (std::size_t n : {0, 1, 64, 65, 1000, 4096, 4097}) {
     std::vector<int> done(n, 0);
     for_each_by_runs(n, [&](std::size_t k) { ++done[k]; });
     EXPECT_EQ(std::ranges::count(done, 1), static_cast<std::ptrdiff_t>(n));
