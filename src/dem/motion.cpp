@@ -206,6 +206,47 @@ struct Batch {
   return way;
 }
 
+/// Turns a body that is free about all axes, damped along the principal ones.
+void turn_body(const BodyProperties& body, const Vec3& moment, double alpha, double kick_time, double dt,
+               WallState& wall) {
+  const Vec3 mobility = body.inertia.cwiseInverse();
+  const Mat3 r = wall.pose.orientation.toRotationMatrix();
+  const Vec3 moment_body = r.transpose() * moment;
+  Vec3 spin_body = (r.transpose() * wall.angular_momentum).cwiseQuotient(body.inertia);
+  const Vec3 damped_moment = damped(moment_body, spin_body, alpha);
+  wall.damping_loss += kick<double>(moment_body, mobility, alpha, kick_time, spin_body);
+  wall.angular_momentum += kick_time * (r * damped_moment);
+  rotate_freely(wall.pose.orientation, wall.angular_momentum, body.inertia, dt);
+  const Mat3 now = wall.pose.orientation.toRotationMatrix();
+  wall.angular_velocity = spin_of<double>(now, mobility, wall.angular_momentum);
+}
+
+/// Turns a body that is free about some of the world's axes, damped along these. Bearings act about the other
+/// ones only, so what they take leaves the momentum about the free ones alone: dL_f/dt = M_f, and
+/// L_f = J_ff w_f with the inertia J about the world's axes (docs/theory.md, 6).
+void turn_about_free_axes(const BodyProperties& body, const Vec3& all, double alpha, double kick_time,
+                          double dt, WallState& wall) {
+  const Mat3 r = wall.pose.orientation.toRotationMatrix();
+  const Mat3 inertia = r * body.inertia.asDiagonal() * r.transpose();
+  Mat3 of_free = inertia;
+  Vec3 moment = all;
+  for (int a = 0; a < 3; ++a) {
+    if (body.free_turn[static_cast<Index>(a)]) continue;
+    moment[a] = wall.angular_momentum[a] = 0;
+    of_free.row(a).setZero();
+    of_free.col(a).setZero();
+    of_free(a, a) = 1;
+  }
+  const Mat3 mobility = of_free.inverse();
+  const Vec3 before = mobility * wall.angular_momentum;
+  const Vec3 acting = damped(moment, before, alpha);
+  wall.angular_velocity = mobility * Vec3(wall.angular_momentum + kick_time * acting);
+  wall.angular_momentum = inertia * wall.angular_velocity;
+  wall.damping_loss += 0.5 * kick_time * (moment - acting).dot(before + wall.angular_velocity);
+  const Vec3 half = 0.5 * dt * wall.angular_velocity;
+  wall.pose.orientation = (Quat(1.0, half.x(), half.y(), half.z()) * wall.pose.orientation).normalized();
+}
+
 void move_body(const Model& model, const Wall& properties, WallState& wall, double kick_time, double dt) {
   const BodyProperties& body = *properties.body;
   const double alpha = model.local_damping;
@@ -218,33 +259,13 @@ void move_body(const Model& model, const Wall& properties, WallState& wall, doub
   wall.applied_work += 0.5 * kick_time * wall.applied_force.dot(before + wall.velocity);
   wall.pose.position += dt * wall.velocity;
 
-  Vec3 moment = wall.moment + wall.applied_moment;
-  for (int a = 0; a < 3; ++a)
-    if (!body.free_turn[static_cast<Index>(a)]) moment[a] = wall.angular_momentum[a] = 0;
-  if (!(body.free_turn[0] || body.free_turn[1] || body.free_turn[2])) return;
-  const Mat3 r = wall.pose.orientation.toRotationMatrix();
-  const Vec3 moment_body = r.transpose() * moment;
-  Vec3 spin_body = (r.transpose() * wall.angular_momentum).cwiseQuotient(body.inertia);
-  const Vec3 damped_moment = damped(moment_body, spin_body, alpha);
-  wall.damping_loss += kick<double>(moment_body, body.inertia.cwiseInverse(), alpha, kick_time, spin_body);
-  wall.angular_momentum += kick_time * (r * damped_moment);
-  wall.angular_velocity = spin_of<double>(r, body.inertia.cwiseInverse(), wall.angular_momentum);
-  bool all_free = true;
-  for (int a = 0; a < 3; ++a) {
-    if (body.free_turn[static_cast<Index>(a)]) continue;
-    wall.angular_velocity[a] = 0;
-    all_free = false;
-  }
-  if (all_free) {
-    rotate_freely(wall.pose.orientation, wall.angular_momentum, body.inertia, dt);
-    const Mat3 now = wall.pose.orientation.toRotationMatrix();
-    wall.angular_velocity = spin_of<double>(now, body.inertia.cwiseInverse(), wall.angular_momentum);
-  } else {
-    // A blocked axis takes whatever moment it needs; the momentum is that of the turn that is left.
-    wall.angular_momentum = r * (r.transpose() * wall.angular_velocity).cwiseProduct(body.inertia);
-    const Vec3 half = 0.5 * dt * wall.angular_velocity;
-    wall.pose.orientation = (Quat(1.0, half.x(), half.y(), half.z()) * wall.pose.orientation).normalized();
-  }
+  const auto n_free = std::ranges::count(body.free_turn, true);
+  if (n_free == 0) return;
+  const Vec3 moment = wall.moment + wall.applied_moment;
+  if (n_free == 3)
+    turn_body(body, moment, alpha, kick_time, dt, wall);
+  else
+    turn_about_free_axes(body, moment, alpha, kick_time, dt, wall);
   wall.applied_work += 0.5 * kick_time * wall.applied_moment.dot(spin_before + wall.angular_velocity);
 }
 
