@@ -1,7 +1,9 @@
 #include "dem/step.h"
 
 #include <chrono>
+#include <cmath>
 
+#include "base/error.h"
 #include "dem/forces.h"
 #include "dem/inspect.h"
 #include "dem/motion.h"
@@ -60,6 +62,9 @@ void step(const Model& model, State& state, Workspace& work) {
   }
   watch.add_to(work.profile.search);
   const double dt = state.planned_dt;
+  if (!std::isfinite(dt))
+    throw RunError(
+        "no stone and no body is there whose motion a time step could follow: let no time pass yet");
 
   move_clumps(model, state, work, dt);
   move_walls(model, state, work, dt);

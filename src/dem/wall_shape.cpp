@@ -16,7 +16,7 @@ constexpr double same_point = 1e-5;
 constexpr double same_normal = 1e-3;
 
 Sphere bound_of(const Facet& f) {
-  // Smallest sphere of the longest side, or the circumscribed one: the former suffices after growing it.
+  // About the middle of the corners: hardly larger than the smallest one, and found at once.
   const Vec3 centre = (f.a + f.b + f.c) / 3.0;
   return {centre, std::max({(f.a - centre).norm(), (f.b - centre).norm(), (f.c - centre).norm()})};
 }

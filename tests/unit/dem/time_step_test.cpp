@@ -34,6 +34,13 @@ TEST(StableStep, BallOnAPlane) {
   }
 }
 
+// Walls alone have no stable step: a step without end would leave them nowhere.
+TEST(StableStep, NothingThatAStepCouldFollow) {
+  Simulation sim = scenes::make_scene({});
+  scenes::add_plane(sim, Vec3::Zero(), Vec3::UnitZ());
+  EXPECT_THROW(sim.step(), RunError);
+}
+
 // Dashpots of ratio b: (sqrt(1 + d^2) - d)/omega with d = b sqrt(m R^2/I) of the turning ball.
 TEST(StableStep, BallWithDashpots) {
   Setting a;
