@@ -115,8 +115,23 @@ void check_stage_list(const Document& document, const std::vector<OneOf<StageInp
   }
 }
 
+Presence::Presence(const Simulation& sim) : sim_(sim) {
+  for (const WallState& wall : sim.state.walls) is_there_.push_back(wall.present);
+}
+
+void Presence::check(const Document& document, const std::string& key, const std::string& name) const {
+  const std::size_t wall = index(name);
+  if (is_there_[wall]) return;
+  if (sim_.model.walls[wall].body)
+    document.fail(key, fmt::format("{} is not in its place yet", name),
+                  "place it before, with a stage of kind insert");
+  document.fail(key, fmt::format("{} has been taken away", name), "let the stage that removes it come later");
+}
+
 void check_stages(const Document& document, const CaseInput& in, const Simulation& sim) {
   check_stage_list(document, in.stages, in, sim);
+  Presence presence(sim);
+  for (const OneOf<StageInput>& stage : in.stages) stage.input->follow(document, presence);
   std::vector<std::string> names;
   for (const OneOf<StageInput>& stage : in.stages) names.push_back(stage.input->name);
   std::ranges::sort(names);
@@ -174,6 +189,7 @@ void check_time_step(const Document& document, const CaseInput& in, const Simula
   Model model = sim.model;
   model.walls.clear();
   model.limits = {};
+  model.domain.setEmpty();  // where it stands does not matter
   model.time_step.fixed.reset();
   const GradingInput& grading = in.stones.grading;
   double stable = std::numeric_limits<double>::infinity();

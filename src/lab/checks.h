@@ -34,6 +34,21 @@ void check_region(const Document& document, const CaseInput& experiment, const s
 void check_measures(const Document& document, const Simulation& sim, const std::string& key,
                     const std::vector<std::string>& names);
 
+/// Which walls and bodies are there, as one stage follows the other.
+class Presence {
+ public:
+  explicit Presence(const Simulation& sim);
+  void put(const std::string& name) { is_there_[index(name)] = true; }
+  void take_away(const std::string& name) { is_there_[index(name)] = false; }
+  /// Refuses, at a key of the case, a wall or body that is not there.
+  void check(const Document& document, const std::string& key, const std::string& name) const;
+
+ private:
+  std::size_t index(const std::string& name) const { return static_cast<std::size_t>(sim_.find_wall(name)); }
+  const Simulation& sim_;
+  std::vector<bool> is_there_;
+};
+
 /// Names of walls and bodies: plain, and each once. There is one container at most, or trays.
 void check_names(const Document& document, const CaseInput& experiment);
 
@@ -41,7 +56,7 @@ void check_names(const Document& document, const CaseInput& experiment);
 void check_stage_list(const Document& document, const std::vector<OneOf<StageInput>>& stages,
                       const CaseInput& experiment, const Simulation& sim);
 
-/// The stages of the case, and the names of those that are recorded.
+/// The stages of the case, what they act on, and the names of those that are recorded.
 void check_stages(const Document& document, const CaseInput& experiment, const Simulation& sim);
 
 /// What must be so in a model of two dimensions: walls stand on the plane and reach through the thickness.

@@ -27,14 +27,16 @@ struct BoxRegion : RegionInput {
   std::optional<Vec3> from, to;        // [m]
   std::optional<double> below, above;  // [m]
 
+  /// What all of its bounds leave [m].
+  Eigen::AlignedBox3d box() const {
+    constexpr double end = std::numeric_limits<double>::infinity();
+    Eigen::AlignedBox3d bounds(from.value_or(Vec3::Constant(-end)), to.value_or(Vec3::Constant(end)));
+    bounds.min().z() = std::max(bounds.min().z(), above.value_or(-end));
+    bounds.max().z() = std::min(bounds.max().z(), below.value_or(end));
+    return bounds;
+  }
   Region make() const override {
-    Eigen::AlignedBox3d box(Vec3::Constant(-std::numeric_limits<double>::infinity()),
-                            Vec3::Constant(std::numeric_limits<double>::infinity()));
-    if (from) box.min() = *from;
-    if (to) box.max() = *to;
-    if (above) box.min().z() = *above;
-    if (below) box.max().z() = *below;
-    return [box](const Vec3& x) { return box.contains(x); };
+    return [bounds = box()](const Vec3& x) { return bounds.contains(x); };
   }
 };
 
@@ -48,6 +50,8 @@ void declare(Fields& f, BoxRegion& in) {
           "give from and to, or above and below");
   f.check(!in.from || !in.to || (*in.to - *in.from).minCoeff() > 0, "to", "the box is empty",
           "each length of to is larger than that of from");
+  f.check(in.box().sizes().z() > 0, in.below ? "below" : "above", "the box is empty",
+          "let above be lower than below, and the layer between them reach between from and to");
 }
 
 struct MeshRegion : RegionInput {

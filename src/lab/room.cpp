@@ -17,10 +17,20 @@ void check_room(const Document& document, const std::string& key, const Simulati
 }
 
 Eigen::AlignedBox3d container_now(const Simulation& sim) {
-  if (sim.trays.empty()) return sim.container;
-  Eigen::AlignedBox3d box;
-  for (const Tray& tray : sim.trays)
-    box.extend(tray.inside.translated(sim.state.walls[static_cast<Index>(tray.wall)].pose.position));
+  const auto place = [&](int wall) -> const Vec3& {
+    return sim.state.walls[static_cast<Index>(wall)].pose.position;
+  };
+  if (!sim.trays.empty()) {
+    Eigen::AlignedBox3d box;
+    for (const Tray& tray : sim.trays) box.extend(tray.inside.translated(place(tray.wall)));
+    return box;
+  }
+  if (const int mesh = sim.container_mesh; mesh >= 0)
+    return sim.container.translated(place(mesh) - sim.wall_reference[static_cast<Index>(mesh)].position);
+  Eigen::AlignedBox3d box = sim.container;
+  for (const BoxSide& side : sim.sides)
+    if (sim.state.walls[static_cast<Index>(side.wall)].present)
+      (side.is_high ? box.max() : box.min())[side.axis] = place(side.wall)[side.axis];
   return box;
 }
 
@@ -29,7 +39,7 @@ bool is_in_room(const Simulation& sim, const Vec3& point) {
     const WallState& wall = sim.state.walls[static_cast<Index>(tray.wall)];
     return wall.present && tray.inside.contains(wall.pose.to_body(point));
   };
-  if (sim.trays.empty() ? !sim.container.contains(point) : std::ranges::none_of(sim.trays, holds))
+  if (sim.trays.empty() ? !container_now(sim).contains(point) : std::ranges::none_of(sim.trays, holds))
     return false;
   for (Index w = 0; w < sim.model.walls.size(); ++w) {
     if (!sim.state.walls[w].present) continue;
@@ -42,10 +52,11 @@ bool is_in_room(const Simulation& sim, const Vec3& point) {
   return true;
 }
 
-double volume_in(const Eigen::AlignedBox3d& box, const Region& region) {
+double volume_in(const Eigen::AlignedBox3d& box, const Region& region, const Space& space) {
   const Vec3 size = box.sizes();
-  const double step = size.minCoeff() / 100;
-  const Eigen::Array3d n = (size.array() / step).round();
+  const double step = (space.is_plane() ? std::min(size.x(), size.z()) : size.minCoeff()) / 100;
+  Eigen::Array3d n = (size.array() / step).round();
+  if (space.is_plane()) n.y() = 1;
   double inside = 0;
   for (int x = 0; x < n.x(); ++x)
     for (int y = 0; y < n.y(); ++y)

@@ -12,14 +12,15 @@ namespace trackbed {
 /// Refuses a case without a container, at a key.
 void check_room(const Document& document, const std::string& key, const Simulation& sim);
 
-/// Around the inside of the container: where its trays have been moved to, or as it was made [m].
+/// Around the inside of the container, where its trays, sides or mesh have been moved to [m]. A side that has
+/// been taken away counts where it was made.
 Eigen::AlignedBox3d container_now(const Simulation& sim);
 
 bool is_in_room(const Simulation& sim, const Vec3& point);
 
 /// Volume of the part of a box that is in the region [m^3]; by counting points 1/100 of its shortest side
-/// apart.
-double volume_in(const Eigen::AlignedBox3d& box, const Region& region);
+/// apart, in two dimensions those of the plane.
+double volume_in(const Eigen::AlignedBox3d& box, const Region& region, const Space& space = {});
 
 /// Evenly spread over the part of a box that is in the region, which must not be empty.
 Vec3 point_in(const Eigen::AlignedBox3d& box, Rng& rng, const Region& region);

@@ -37,9 +37,12 @@ void Simulation::drive(std::size_t wall, const Vec3& velocity) {
       w.boundary_work += 0.5 * body->mass * (velocity[a] * velocity[a] - w.velocity[a] * w.velocity[a]);
     w.velocity[a] = velocity[a];
   }
-  for (const Tray& tray : trays)
-    if (tray.wall == static_cast<int>(wall) && !model.domain.isEmpty())
-      model.domain.extend(tray.inside.translated(w.pose.position));
+  const auto number = static_cast<int>(wall);
+  const bool is_of_container = number == container_mesh ||
+                               std::ranges::find(trays, number, &Tray::wall) != trays.end() ||
+                               std::ranges::find(sides, number, &BoxSide::wall) != sides.end();
+  if (is_of_container && !model.domain.isEmpty())
+    model.domain.extend(container.translated(w.pose.position - wall_reference[wall].position));
 }
 
 void Simulation::stop_stones() {

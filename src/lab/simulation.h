@@ -35,6 +35,12 @@ struct Tray {
   double rim_height = 0;       // where that lies, wall frame [m]
 };
 
+/// A plane side of the box that is the container, square to an axis.
+struct BoxSide {
+  int wall = 0, axis = 0;
+  bool is_high = false;  // at the high end of the axis
+};
+
 /// Tells whether a point [m] lies in a part of space.
 using Region = std::function<bool(const Vec3&)>;
 
@@ -53,6 +59,7 @@ struct Simulation {
   Eigen::AlignedBox3d container;  // around the inside of the container [m]; empty: there is none
   int container_mesh = -1;        // the wall whose inside is the container; -1: it is the box, or the trays
   std::vector<Tray> trays;        // none: the container is the box or the mesh
+  std::vector<BoxSide> sides;     // of the box
   std::vector<Pose>
       wall_reference;  // where each wall and body stood at the start, or where a stage placed it
   std::string stage;   // name of the one that runs
@@ -68,8 +75,8 @@ struct Simulation {
   const StoneSet& stone_set(std::string_view name) const;
 
   /// Gives a wall or a held body this velocity [m/s], any other body its parts along the blocked axes; the
-  /// kinetic energy that a body gains is booked as work of the boundary. The domain grows by where a tray
-  /// goes.
+  /// kinetic energy that a body gains is booked as work of the boundary. The domain grows by where a
+  /// wall of the container takes it.
   void drive(std::size_t wall, const Vec3& velocity);
 
   /// Takes all speed from the stones.

@@ -42,6 +42,7 @@ struct ResultTable {
 };
 
 class Document;
+class Presence;
 class Stage;
 struct CaseInput;
 
@@ -52,8 +53,8 @@ struct StageInput {
   virtual ~StageInput() = default;
   /// Refuses, with Document::fail, what is wrong and can be known before the run; the stage relies on it.
   virtual void check(const Document&, const CaseInput&, const Simulation&) const {}
-  /// Whether the stage places this body.
-  virtual bool places(const std::string& /*body*/) const { return false; }
+  /// Takes note of what it puts in place or takes away, and refuses to act on what is not there then.
+  virtual void follow(const Document&, Presence&) const {}
   virtual std::unique_ptr<Stage> make(const CaseInput& experiment) const = 0;
 };
 

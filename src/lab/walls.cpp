@@ -60,7 +60,10 @@ struct BoxInput : WallInput {
     const Quat up = Quat::FromTwoVectors(Vec3::UnitZ(), side.normal);
     WallShape shape = make_plane_wall(name, 1.0);
     for (Vec3& v : shape.mesh.vertices) v = Vec3(v.x() * half[0], v.y() * half[1], 0);
-    add_wall(sim, {std::move(shape), material, {}}, {side.middle, up});
+    const int wall = add_wall(sim, {std::move(shape), material, {}}, {side.middle, up});
+    int axis = 0;
+    side.normal.cwiseAbs().maxCoeff(&axis);
+    sim.sides.push_back({wall, axis, side.normal[axis] < 0});
   }
 };
 

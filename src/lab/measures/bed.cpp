@@ -98,7 +98,8 @@ double bed_volume(const Simulation& sim) {
     return below.max().z() > below.min().z()
                ? volume_in(
                      below,
-                     [&](const Vec3& x) { return x.z() < heights.at(x.head<2>()) && is_in_room(sim, x); })
+                     [&](const Vec3& x) { return x.z() < heights.at(x.head<2>()) && is_in_room(sim, x); },
+                     sim.model.space)
                : 0.0;
   }
   double volume = container.sizes().head<2>().prod() * (heights.mean() - container.min().z());

@@ -55,8 +55,9 @@ struct Patches {
 bool misses_container(const Simulation& sim, const Eigen::Vector2d& line) {
   const WallShape& shape = sim.model.walls[static_cast<Index>(sim.container_mesh)].shape;
   const Pose& pose = sim.state.walls[static_cast<Index>(sim.container_mesh)].pose;
-  const double low = sim.container.min().z(), step = 0.5 * Surface::cell;
-  for (double z = low + 0.5 * step; z < sim.container.max().z(); z += step)
+  const Eigen::AlignedBox3d box = container_now(sim);
+  const double step = 0.5 * Surface::cell;
+  for (double z = box.min().z() + 0.5 * step; z < box.max().z(); z += step)
     if (is_inside(shape, pose.to_body({line.x(), line.y(), z}))) return false;
   return true;
 }
@@ -108,9 +109,9 @@ double LocalHeights::mean_over(const Eigen::AlignedBox2d& part) const {
   return n > 0 ? sum / n : at(part.center());
 }
 
-Surface::Surface(const Eigen::AlignedBox2d& where)
+Surface::Surface(const Eigen::AlignedBox2d& where, double floor)
     : lines_{where, lines_along(where.sizes().x()), lines_along(where.sizes().y())},
-      height_(lines_.size(), 0.0),
+      height_(lines_.size(), floor),
       covered_(lines_.size(), false),
       left_out_(lines_.size(), false) {}
 
@@ -185,7 +186,7 @@ LocalHeights Surface::local() const {
 Surface surface_of(const Simulation& sim, const Eigen::AlignedBox2d& where) {
   Eigen::AlignedBox2d lines = where;
   if (sim.model.space.is_plane()) lines.min().y() = lines.max().y() = 0;  // discs reach through the thickness
-  Surface surface(lines);
+  Surface surface(lines, sim.container.isEmpty() ? 0.0 : container_now(sim).min().z());
   if (!sim.trays.empty())
     surface.leave_out([&](const Eigen::Vector2d& line) { return ends_at_a_rim(sim, line); });
   if (sim.container_mesh >= 0)

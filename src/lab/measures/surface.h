@@ -49,7 +49,8 @@ class Surface {
   static constexpr double cell = 0.02;  // [m]
   static constexpr int patch = 5;       // cells along a side of what counts as near
 
-  explicit Surface(const Eigen::AlignedBox2d& where);
+  /// Lines that meet no stone end at `floor` [m].
+  Surface(const Eigen::AlignedBox2d& where, double floor);
 
   void add_ball(const Vec3& centre, double radius);
   /// The lines through a facet say nothing of the free surface.

@@ -22,7 +22,7 @@ struct InsertInput : StageInput {
     check_body(document, sim, here + ".body", body);
     if (!at.empty()) check_in_plane(document, sim, here + ".at", {at[0], at[1], 0});
   }
-  bool places(const std::string& other) const override { return other == body; }
+  void follow(const Document&, Presence& presence) const override { presence.put(body); }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 

@@ -21,7 +21,13 @@ struct LoadInput : StageInput {
   double ramp = 0;                  // [s]
   Vec3 direction{0, 0, -1};
   std::vector<double> times, forces;  // [s], [N]
-  void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override;
+  void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
+    check_body(document, sim, here + ".body", body);
+    check_in_plane(document, sim, here + ".direction", direction);
+  }
+  void follow(const Document& document, Presence& presence) const override {
+    presence.check(document, here + ".body", body);
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 
   bool is_periodic() const { return waveform == "sine" || waveform == "haversine"; }
@@ -67,17 +73,6 @@ void declare(Fields& f, LoadInput& in) {
           in.is_periodic());
   f.gives("energy_in", Dimension::energy, "work of force, walls and gravity meanwhile");
   f.gives("energy_error", Dimension::none, "what the balance of energies is out by, over energy_in");
-}
-
-void LoadInput::check(const Document& document, const CaseInput& experiment, const Simulation& sim) const {
-  check_body(document, sim, here + ".body", body);
-  check_in_plane(document, sim, here + ".direction", direction);
-  for (const OneOf<StageInput>& stage : experiment.stages) {
-    if (stage.input->places(body)) return;
-    if (stage.input.get() == this) break;
-  }
-  document.fail(here + ".body", fmt::format("{} is not in its place yet", body),
-                "place it before, with a stage of kind insert");
 }
 
 class Load : public Stage {

@@ -27,6 +27,9 @@ struct MoveInput : StageInput {
   LevelsInput levels;
   bool says_when() const { return distance || displacement || duration || force; }
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override;
+  void follow(const Document& document, Presence& presence) const override {
+    presence.check(document, here + ".wall", wall);
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 

@@ -28,15 +28,17 @@ Overlaps overlaps_of_stones(const Simulation& sim) {
   return all;
 }
 
+bool is_softened(const Simulation& sim, int material) {
+  return std::ranges::find(sim.model.walls, material, &Wall::material) == sim.model.walls.end();
+}
+
 namespace {
 
 /// Scales the stiffness between stones whose materials no wall has.
 void soften(const Simulation& sim, double share, PairTable& pairs) {
-  std::vector<bool> is_of_wall(sim.model.materials.size());
-  for (const Wall& wall : sim.model.walls) is_of_wall[static_cast<std::size_t>(wall.material)] = true;
   for (int a = 0; a < pairs.size(); ++a)
     for (int b = 0; b < pairs.size(); ++b) {
-      if (is_of_wall[static_cast<std::size_t>(a)] || is_of_wall[static_cast<std::size_t>(b)]) continue;
+      if (!is_softened(sim, a) || !is_softened(sim, b)) continue;
       pairs(a, b).kn *= share;
       pairs(a, b).ks *= share;
     }

@@ -16,6 +16,9 @@ struct Overlaps {
 };
 Overlaps overlaps_of_stones(const Simulation& sim);
 
+/// Whether stones of this material give way to each other while they part: no wall or body is made of it.
+bool is_softened(const Simulation& sim, int material);
+
 /// From when it is opened to the end of the stage there is neither friction nor gravity, neither overlaps
 /// nor places are limited, and stones move so little in a step that none is thrown.
 class Parting {

@@ -9,6 +9,9 @@ struct ReleaseInput : StageInput {
   void check(const Document& document, const CaseInput&, const Simulation& sim) const override {
     check_body(document, sim, here + ".body", body);
   }
+  void follow(const Document& document, Presence& presence) const override {
+    presence.check(document, here + ".body", body);
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 

@@ -14,6 +14,12 @@ struct RemoveInput : StageInput {
     for (const std::string& wall : walls) check_wall(document, sim, here + ".walls", wall);
     where.check(document, experiment, here);
   }
+  void follow(const Document& document, Presence& presence) const override {
+    for (const std::string& wall : walls) {
+      presence.check(document, here + ".walls", wall);
+      presence.take_away(wall);
+    }
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 

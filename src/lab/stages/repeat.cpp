@@ -20,8 +20,9 @@ struct RepeatInput : StageInput {
     check_stage_list(document, stages, experiment, sim);
     check_measures(document, sim, here + ".measures", measures);
   }
-  bool places(const std::string& body) const override {
-    return std::ranges::any_of(stages, [&](const auto& stage) { return stage.input->places(body); });
+  void follow(const Document& document, Presence& presence) const override {
+    for (int time = 0; time < std::min(times, 2); ++time)  // what the first leaves is what the second finds
+      for (const OneOf<StageInput>& stage : stages) stage.input->follow(document, presence);
   }
   std::unique_ptr<Stage> make(const CaseInput& experiment) const override;
 };

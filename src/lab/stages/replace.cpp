@@ -20,13 +20,20 @@ struct ReplaceInput : StageInput {
   std::optional<std::string> from;
   Selection where;
   double share = 1;  // by mass
-  double stiffness = 0.1;
+  std::optional<double> stiffness;
   double mean_overlap = 0.005;
   double time_limit = 1;  // [s]
-  void check(const Document& document, const CaseInput& experiment, const Simulation&) const override {
+  void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override {
     if (!set.empty()) check_stone_set(document, experiment, here + ".set", set);
     if (from && !from->empty()) check_stone_set(document, experiment, here + ".from", *from);
     where.check(document, experiment, here);
+    if (from && *from == set)
+      document.fail(here + ".from", "these stones are of the set already",
+                    "name another one, or leave from out");
+    if (stiffness && !is_softened(sim, sim.stone_set(set).material))
+      document.fail(here + ".stiffness",
+                    "a wall or body is of the stones' material, which would give way, too",
+                    "give it a material of its own, or leave stiffness out");
   }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
@@ -37,20 +44,22 @@ void declare(Fields& f, ReplaceInput& in) {
   f.text("from", in.from,
          "only stones of this set of stones.sets are replaced, or, with \"\", of those of [stones]");
   declare_selection(f, in.where, "are replaced");
-  f.number("share", in.share, {.at_least = 0, .at_most = 1},
-           "share by mass that the set then has of these stones; which are replaced is drawn at random");
+  f.number(
+      "share", in.share, {.at_least = 0, .at_most = 1},
+      "share by mass that the set then has of these stones, those that it has of them already counted; which "
+      "are replaced is drawn at random");
   f.number("mean_overlap", in.mean_overlap, {.above = 0, .below = 1},
            "the stones are parted until the mean overlap is below this share of the smaller stone's radius");
   f.number(
       "stiffness", in.stiffness, {.above = 0, .at_most = 1},
       "share of their stiffness that stones have against each other while they part: low, they press none of "
-      "themselves through a wall of triangles");
+      "themselves through a wall of triangles. By default 0.1; all of it where a wall is of their material");
   f.quantity("time_limit", in.time_limit, Dimension::time, {.above = 0},
              "the run fails when parting takes longer");
   f.gives("replaced", Dimension::none, "stones");
   f.gives("left", Dimension::none, "stones that had no room to be replaced");
   f.gives("share", Dimension::none, "replaced of all stones, by number");
-  f.gives("mass_share", Dimension::none, "of the set, by mass of the stones that could have been replaced");
+  f.gives("mass_share", Dimension::none, "of the set, by mass of the selected stones");
   f.gives("time", Dimension::time, "that parting took");
   f.gives("mean_overlap", Dimension::none, "of touching stones, over the smaller one's radius");
   f.gives("largest_overlap", Dimension::none, "the same, the largest");
@@ -69,8 +78,9 @@ class Replace : public Stage {
     std::vector<Reshaped> stones;
     const std::vector<int> order = selected(sim);
     Mixture mixture;
-    for (int clump : order) mixture.kept += c.mass[static_cast<std::size_t>(clump)];
+    for (int clump : order) mixture.add(c.mass[static_cast<std::size_t>(clump)], is_of(sim, clump, set));
     for (int clump : order) {
+      if (is_of(sim, clump, set)) continue;
       const auto k = static_cast<std::size_t>(clump);
       const double mass = mass_in(sim, set, k);
       if (!mixture.is_nearer_with(mass, c.mass[k], in_.share)) continue;
@@ -92,7 +102,7 @@ class Replace : public Stage {
     reshape(sim.model, sim.state, stones);
     sim.stop_stones();
     replaced_ = static_cast<int>(stones.size());
-    parting_.open(sim, in_.stiffness);
+    parting_.open(sim, in_.stiffness.value_or(0.1));
   }
 
   void control(Simulation& sim) override { parting_.control(sim); }
@@ -116,11 +126,12 @@ class Replace : public Stage {
  private:
   /// Masses on the way to a mixture [kg].
   struct Mixture {
-    double replaced = 0, kept = 0;
+    double of_set = 0, kept = 0;
 
-    double now() const { return replaced > 0 ? replaced / (replaced + kept) : 0.0; }
+    void add(double mass, bool is_of_set) { (is_of_set ? of_set : kept) += mass; }
+    double now() const { return of_set > 0 ? of_set / (of_set + kept) : 0.0; }
     void take(double mass, double instead_of) {
-      replaced += mass;
+      of_set += mass;
       kept -= instead_of;
     }
     /// Whether one more brings the share by mass nearer to the one wanted.
@@ -132,19 +143,21 @@ class Replace : public Stage {
     }
   };
 
-  bool is_selected(const Simulation& sim, std::size_t clump) const {
-    if (!in_.where.contains(sim, sim.state.clumps.position[clump])) return false;
-    if (!in_.from) return true;
-    const StoneSet& from = sim.stone_set(*in_.from);
-    const int shape = sim.state.clumps.shape[clump];
-    return shape >= from.first && shape < from.first + from.count;
+  static bool is_of(const Simulation& sim, int clump, const StoneSet& set) {
+    const int shape = sim.state.clumps.shape[static_cast<std::size_t>(clump)];
+    return shape >= set.first && shape < set.first + set.count;
+  }
+
+  bool is_selected(const Simulation& sim, int clump) const {
+    if (!in_.where.contains(sim, sim.state.clumps.position[static_cast<std::size_t>(clump)])) return false;
+    return !in_.from || is_of(sim, clump, sim.stone_set(*in_.from));
   }
 
   /// All stones of the selection; at random where only a part is replaced.
   std::vector<int> selected(const Simulation& sim) const {
     std::vector<int> order;
     for (int clump = 0; clump < sim.state.clumps.size(); ++clump)
-      if (is_selected(sim, static_cast<std::size_t>(clump))) order.push_back(clump);
+      if (is_selected(sim, clump)) order.push_back(clump);
     if (in_.share == 1) return order;
     Rng rng(sim.seed, "share " + in_.name);
     for (std::size_t k = order.size(); k > 1; --k)

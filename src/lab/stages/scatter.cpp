@@ -23,14 +23,16 @@ struct ScatterInput : StageInput {
   bool is_room(const Simulation& sim, const Vec3& point) const {
     return where.contains(sim, point) && is_in_room(sim, point);
   }
-  /// Random numbers for a part of space are those of the stage; the whole container has the same stones
-  /// however it is filled.
+  /// Random numbers are those of the stage; but an empty container as a whole has the same stones however it
+  /// is filled.
   Rng numbers(const Simulation& sim, const std::string& what) const {
-    return {sim.seed, where.is_all() ? what : what + " " + name};
+    const bool is_first = where.is_all() && sim.state.clumps.size() == 0;
+    return {sim.seed, is_first ? what : what + " " + name};
   }
   std::vector<double> sizes(const CaseInput& experiment, const Simulation& sim) const {
     Rng rng = numbers(sim, "sizes");
-    const double room = volume_in(sim.container, [&](const Vec3& point) { return is_room(sim, point); });
+    const double room = volume_in(
+        container_now(sim), [&](const Vec3& point) { return is_room(sim, point); }, sim.model.space);
     return draw_sizes(experiment.stones.grading, sim.model.space, (1.0 - porosity) * room, rng);
   }
   void check(const Document& document, const CaseInput& experiment, const Simulation& sim) const override {
@@ -69,7 +71,7 @@ class Scatter : public Stage {
 
   void open(Simulation& sim) override {
     sizes_ = in_.sizes(experiment_, sim);
-    Rng rng = in_.numbers(sim, "places");
+    Rng rng = in_.numbers(sim, "places");  // before the first stone is there
     const StoneSet set = sim.stone_set(in_.set);
     for (double size : sizes_) place(sim, set, size, rng);
     parting_.open(sim, 1, in_.scaled_share);
@@ -100,7 +102,7 @@ class Scatter : public Stage {
     const auto k = static_cast<std::size_t>(stone);
     for (int tries = 0; tries < 10'000; ++tries) {
       sim.state.clumps.position[k] = sim.model.space.nearest(
-          point_in(sim.container, rng, [&](const Vec3& point) { return in_.is_room(sim, point); }));
+          point_in(container_now(sim), rng, [&](const Vec3& point) { return in_.is_room(sim, point); }));
       sim.state.clumps.orientation[k] = sim.model.space.turn(rng);
       if (is_clear_of_walls(sim, stone, 0)) return;
     }

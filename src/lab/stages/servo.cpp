@@ -17,6 +17,9 @@ struct ServoInput : StageInput {
     check_wall(document, sim, here + ".wall", wall);
     check_in_plane(document, sim, here + ".direction", direction);
   }
+  void follow(const Document& document, Presence& presence) const override {
+    presence.check(document, here + ".wall", wall);
+  }
   std::unique_ptr<Stage> make(const CaseInput&) const override;
 };
 
@@ -42,19 +45,24 @@ class Servo : public Stage {
     from_ = state(sim).pose.position;
   }
   void control(Simulation& sim) override {
-    state(sim).velocity = servo_speed(sim.model, sim.state, wall_, in_.direction, in_.force) * in_.direction;
+    drive(sim, servo_speed(sim.model, sim.state, wall_, in_.direction, in_.force) * in_.direction);
   }
   bool finished(const Simulation& sim) override { return sim.state.time >= end_; }
   double remaining(const Simulation& sim) const override { return end_ - sim.state.time; }
   std::vector<Result> close(Simulation& sim) override {
-    state(sim).velocity = Vec3::Zero();
+    drive(sim, Vec3::Zero());
     return {{"force", -state(sim).force.dot(in_.direction), Dimension::force},
             {"distance", (state(sim).pose.position - from_).dot(in_.direction), Dimension::length}};
   }
   void archive(Archive& a) override { a(wall_, end_, from_); }
 
  private:
-  WallState& state(Simulation& sim) const { return sim.state.walls[static_cast<std::size_t>(wall_)]; }
+  void drive(Simulation& sim, const Vec3& velocity) const {
+    sim.drive(static_cast<std::size_t>(wall_), velocity);
+  }
+  const WallState& state(const Simulation& sim) const {
+    return sim.state.walls[static_cast<std::size_t>(wall_)];
+  }
   ServoInput in_;
   int wall_ = 0;
   double end_ = 0;

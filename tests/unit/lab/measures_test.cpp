@@ -8,6 +8,7 @@
 #include "lab/in_touch.h"
 #include "lab/measure.h"
 #include "lab/measures/measures.h"
+#include "lab/room.h"
 #include "scenes/scene.h"
 
 namespace trackbed {
@@ -143,6 +144,35 @@ TEST(Measures, BedOfBallsOnASquareGrid) {
   EXPECT_NEAR(bed_height(sim), height, 1e-12);
   EXPECT_NEAR(porosity(sim, solid_volume(sim)), 1 - 500 * ball_volume / (0.16 * height), 1e-12);
   EXPECT_NEAR(value_of(sim, "d50"), 0.04, 1e-12);
+}
+
+TEST(Measures, ABedMayLieBelowZero) {
+  Simulation sim = scenes::make_scene(with_gravity());
+  sim.container = {Vec3(0, 0, -0.4), Vec3(0.4, 0.4, 0)};
+  EXPECT_NEAR(bed_height(sim), -0.4, 1e-12);
+  for (int k = 0; k < 10; ++k)
+    for (int j = 0; j < 10; ++j) scenes::add_ball(sim, {0.02 + 0.04 * k, 0.02 + 0.04 * j, -0.38});
+  const double height = std::sqrt(2e-4) + 0.02;
+  EXPECT_NEAR(bed_height(sim), height - 0.4, 1e-12);
+  EXPECT_NEAR(porosity(sim, solid_volume(sim)), 1 - 100 * ball_volume / (0.16 * height), 1e-12);
+}
+
+TEST(Measures, ASideThatMovesTakesTheContainerWithIt) {
+  Simulation sim = scenes::make_scene(with_gravity());
+  sim.container = sim.model.domain = {Vec3(0, 0, 0), Vec3(0.4, 0.4, 0.3)};
+  const int floor = scenes::add_plane(sim, Vec3::Zero(), Vec3::UnitZ());
+  sim.sides = {{floor, 2, false}};
+  for (int k = 0; k < 10; ++k)
+    for (int j = 0; j < 10; ++j) scenes::add_ball(sim, {0.02 + 0.04 * k, 0.02 + 0.04 * j, 0.02});
+  const auto w = static_cast<std::size_t>(floor);
+  sim.state.walls[w].pose.position.z() = -0.02;
+  sim.drive(w, Vec3::Zero());
+  EXPECT_EQ(container_now(sim).min(), Vec3(0, 0, -0.02));
+  EXPECT_EQ(sim.model.domain.min(), Vec3(0, 0, -0.02));
+  EXPECT_EQ(sim.model.domain.max(), Vec3(0.4, 0.4, 0.3));
+  const double height = std::sqrt(2e-4) + 0.02;
+  EXPECT_NEAR(bed_height(sim), height, 1e-12);
+  EXPECT_NEAR(porosity(sim, solid_volume(sim)), 1 - 100 * ball_volume / (0.16 * (height + 0.02)), 1e-12);
 }
 
 TEST(Measures, PorosityOfASlopeCountsWhatLiesBelowItAlone) {
