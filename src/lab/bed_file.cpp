@@ -1,10 +1,12 @@
 #include "lab/bed_file.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <map>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -118,6 +120,73 @@ Pose fit(const std::vector<Pebble>& from, const std::vector<Pebble>& to) {
   return {b - turn * a, Quat(turn)};
 }
 
+/// Largest distance of a sphere from where the pose puts it [m].
+double misfit(const std::vector<Pebble>& from, const std::vector<Pebble>& to, const Pose& pose) {
+  double most = 0;
+  for (std::size_t k = 0; k < from.size(); ++k)
+    most = std::max(most, (pose.to_world(from[k].centre) - to[k].centre).norm());
+  return most;
+}
+
+/// A stone as a template, its scale and its pose.
+struct Placed {
+  int shape = 0;
+  double scale = 1;
+  Pose pose;
+};
+
+/// The templates of a bed: one for all balls, one for all clumps that are alike.
+class Shapes {
+ public:
+  explicit Shapes(std::vector<ClumpTemplate>& templates) : templates_(templates) {}
+
+  Placed place(const std::vector<Pebble>& stone) {
+    return stone.size() == 1 ? place_ball(stone[0]) : place_clump(stone);
+  }
+
+ private:
+  struct Known {
+    int shape;
+    std::vector<Pebble> first;  // the stone that it was made of
+    Pose frame;                 // of the template in that stone's coordinates
+  };
+
+  int add(ClumpTemplate shape) {
+    templates_.push_back(std::move(shape));
+    return static_cast<int>(templates_.size()) - 1;
+  }
+
+  Placed place_ball(const Pebble& ball) {
+    if (ball_ < 0) ball_ = add(make_ball_template(1.0));
+    return {ball_, ball.radius, {ball.centre, Quat::Identity()}};
+  }
+
+  Placed place_clump(const std::vector<Pebble>& stone) {
+    constexpr double tolerance = 0.01;  // of the smallest radius: files are written with few digits
+    std::vector<double> radii;
+    for (const Pebble& p : stone) radii.push_back(p.radius);
+    std::vector<Known>& alike = known_[radii];
+    for (const Known& known : alike) {
+      const Pose moved = fit(known.first, stone);
+      if (misfit(known.first, stone, moved) <= tolerance * *std::ranges::min_element(radii))
+        return placed(known, moved);
+    }
+    Fitted fitted = template_of(stone);
+    alike.push_back({add(std::move(fitted.shape)), stone, fitted.frame});
+    return placed(alike.back(), fit(stone, stone));
+  }
+
+  /// `moved` carries the first stone onto this one.
+  static Placed placed(const Known& known, const Pose& moved) {
+    const Quat turn = (moved.orientation * known.frame.orientation).normalized();
+    return {known.shape, 1.0, {moved.to_world(known.frame.position), turn}};
+  }
+
+  std::vector<ClumpTemplate>& templates_;
+  int ball_ = -1;
+  std::map<std::vector<double>, std::vector<Known>> known_;  // by their radii
+};
+
 }  // namespace
 
 void add_open_box(Simulation& sim, double side) {
@@ -137,27 +206,10 @@ Simulation read_bed(const std::filesystem::path& file, double side, double densi
   sim.model.materials = {{"stone", 2e7, 2e7, 0.5, 0, density}};
   sim.model.pairs = PairTable(sim.model.materials, LawKind::linear, {});
   add_open_box(sim, side);
-  std::map<std::vector<double>, std::pair<int, std::size_t>> known;  // radii -> template, first stone
-  std::vector<Pose> frames;
-  for (std::size_t s = 0; s < stones.size(); ++s) {
-    if (stones[s].size() == 1) {
-      if (sim.model.templates.empty()) sim.model.templates.push_back(make_ball_template(1.0));
-      add_clump(sim.model, sim.state, 0, stones[s][0].radius, 0, {stones[s][0].centre, Quat::Identity()});
-      continue;
-    }
-    std::vector<double> radii;
-    for (const Pebble& p : stones[s]) radii.push_back(p.radius);
-    const auto [entry, is_new] = known.try_emplace(radii, static_cast<int>(sim.model.templates.size()), s);
-    if (is_new) {
-      Fitted fitted = template_of(stones[s]);
-      frames.push_back(fitted.frame);
-      sim.model.templates.push_back(std::move(fitted.shape));
-    }
-    const auto& [shape, first] = entry->second;
-    const Pose moved = fit(stones[first], stones[s]);
-    const Pose& frame = frames[static_cast<std::size_t>(shape)];
-    add_clump(sim.model, sim.state, shape, 1.0, 0,
-              {moved.to_world(frame.position), (moved.orientation * frame.orientation).normalized()});
+  Shapes shapes(sim.model.templates);
+  for (const std::vector<Pebble>& stone : stones) {
+    const Placed placed = shapes.place(stone);
+    add_clump(sim.model, sim.state, placed.shape, placed.scale, 0, placed.pose);
   }
   sim.changed();
   return sim;

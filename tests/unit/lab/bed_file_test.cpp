@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
+#include <vector>
 
 #include "base/error.h"
 #include "base/rng.h"
@@ -55,6 +57,31 @@ TEST_F(BedFile, EqualStonesShareATemplateAndStandWhereTheyStood) {
       const auto given = std::ranges::find(stone, shape.pebbles[k].radius, &Pebble::radius);
       ASSERT_NE(given, stone.end());
       EXPECT_LT((found[k] - poses[s].to_world(given->centre)).norm(), 1e-14);
+    }
+  }
+}
+
+// A ball, then clumps of equal radii, of which the third is another shape.
+TEST_F(BedFile, BallsAndUnequalClumpsHaveTemplatesOfTheirOwn) {
+  std::ofstream(file_) << "0.1 0.1 0.1 0.02 0\n"
+                          "0.3 0.1 0.1 0.02 1\n0.32 0.1 0.1 0.01 1\n"
+                          "0.5 0.1 0.1 0.02 2\n0.5 0.12 0.1 0.01 2\n"
+                          "0.7 0.1 0.1 0.02 3\n0.715 0.1 0.1 0.01 3\n"
+                          "0.9 0.1 0.1 0.03 4\n";
+  const Simulation sim = read_bed(file_, 2, 2630);
+  ASSERT_EQ(sim.state.clumps.size(), 5);
+  EXPECT_EQ(sim.state.clumps.shape, (std::vector<int>{0, 1, 1, 2, 0}));
+  const std::vector<std::vector<Vec3>> given{{{0.1, 0.1, 0.1}},
+                                             {{0.3, 0.1, 0.1}, {0.32, 0.1, 0.1}},
+                                             {{0.5, 0.1, 0.1}, {0.5, 0.12, 0.1}},
+                                             {{0.7, 0.1, 0.1}, {0.715, 0.1, 0.1}},
+                                             {{0.9, 0.1, 0.1}}};
+  for (std::size_t s = 0; s < given.size(); ++s) {
+    const std::vector<Vec3> found = places(sim, s);
+    ASSERT_EQ(found.size(), given[s].size());
+    for (const Vec3& at : given[s]) {
+      const auto distance = [&](const Vec3& x) { return (x - at).norm(); };
+      EXPECT_LT(distance(*std::ranges::min_element(found, {}, distance)), 1e-12);
     }
   }
 }
