@@ -74,13 +74,9 @@ std::vector<std::string> with_region(const ApssOptions& o, const std::string& na
   return overrides;
 }
 
-/// Results of the case with these overrides: those that its folder has, if `may_take`, or else those of a
-/// run.
-Json results_in(const ApssOptions& o, const std::string& folder, const std::vector<std::string>& overrides,
-                bool may_take) {
-  const Document document(o.file, overrides);
-  CaseInput experiment = read_case(document);
-  experiment.record.tables = true;  // the field is read from them
+/// Results of the case: those that its folder has, if `may_take`, or else those of a run.
+Json results_in(const ApssOptions& o, const std::string& folder, const Document& document,
+                const CaseInput& experiment, bool may_take) {
   RunOptions options = o.run;
   options.out = o.out / folder;
   if (may_take)
@@ -88,10 +84,32 @@ Json results_in(const ApssOptions& o, const std::string& folder, const std::vect
   return to_json(run_until_signal(document, experiment, options));
 }
 
+Json results_in(const ApssOptions& o, const std::string& folder, const std::vector<std::string>& overrides) {
+  const Document document(o.file, overrides);
+  return results_in(o, folder, document, read_case(document), o.run.resume);
+}
+
+/// So that the stage's table of stones is written: from it the field is read.
+void record_stones(const std::string& stage, CaseInput& experiment) {
+  RecordInput& record = experiment.record;
+  record.tables = true;
+  record.stages.clear();
+  const auto is_before = [&](const std::string& kept) {
+    for (const auto& one : experiment.stages) {
+      if (one.input->name == stage) return false;
+      if (one.input->name == kept) return true;
+    }
+    return false;
+  };
+  std::erase_if(record.keep, [&](const std::string& kept) { return !is_before(kept); });
+}
+
 /// The case with balls alone; returns its stones.csv. Another share or another area does not change it.
 fs::path run_balls(const ApssOptions& o, const std::string& region, const std::string& stage) {
-  const Json summary =
-      results_in(o, "balls", with_region(o, region, R"({kind = "box", above = "1000 km"})"), true);
+  const Document document(o.file, with_region(o, region, R"({kind = "box", above = "1000 km"})"));
+  CaseInput experiment = read_case(document);
+  record_stones(stage, experiment);
+  const Json summary = results_in(o, "balls", document, experiment, true);
   fmt::print("bed of balls: {}\n", duration_text(work_of(summary).seconds));
   return o.out / "balls" / "stages" / (file_name_of(stage) + "-stones.csv");
 }
@@ -111,7 +129,7 @@ void print_results(const ApssOptions& o, const std::string& stage, const Json& a
   fmt::print("  {:.0f} % fewer pebbles than with shapes everywhere\n",
              100 * (1 - work.pebbles / pebbles_of_all(adapted, work)));
   if (o.reference) {
-    const Work all = work_of(results_in(o, "reference", o.overrides, o.run.resume));
+    const Work all = work_of(results_in(o, "reference", o.overrides));
     fmt::print("reference:   {}, {:.0f} stones, {:.0f} pebbles, {:.0f} contacts\n",
                duration_text(all.seconds), all.stones, all.pebbles, all.contacts);
     fmt::print("saved: {:.0f} % of the time, {:.0f} % of the pebbles, {:.0f} % of the contacts\n",
@@ -154,8 +172,7 @@ int apss_command(int argc, char** argv) {
   add_keep(app, o.run);
   if (const auto code = parse(app, argc, argv)) return *code;
   resume.apply(o.run);
-  if (o.out.empty())
-    o.out = fs::path("out") / (fs::absolute(o.file).parent_path().filename().string() + "-apss");
+  if (o.out.empty()) o.out = default_out(o.file).string() + "-apss";
   o.run.progress = stderr;
 
   const Document document(o.file, o.overrides);
@@ -165,17 +182,17 @@ int apss_command(int argc, char** argv) {
   const InfluenceField field = read_influence(run_balls(o, region, stage), o.by);
   const double threshold = threshold_for(field, o.share);
   write_influence(field, o.out / "influence.csv");
-  const std::vector<std::string> overrides =
-      with_region(o, region,
-                  fmt::format(R"({{kind = "field", file = "{}", above = {:.17g}}})",
-                              fs::absolute(o.out / "influence.csv").string(), threshold));
+  const std::vector<std::string> overrides = with_region(
+      o, region,
+      fmt::format(R"({{kind = "field", file = {}, above = {:.17g}}})",  // JSON quotes as TOML does
+                  Json(fs::absolute(o.out / "influence.csv").string()).dump(), threshold));
   fmt::print("influential area: {} above {:.4g} {} in the stage {}\n", o.by, threshold,
              si_unit_of(field.dimension), stage);
-  fmt::print("its case:\n  trackbed run {}", o.file.string());
-  for (const std::string& value : overrides) fmt::print(" \\\n    --set '{}'", value);
+  fmt::print("its case:\n  trackbed run {}", quoted(o.file.string()));
+  for (const std::string& value : overrides) fmt::print(" \\\n    --set {}", quoted(value));
   fmt::print("\n");
   if (o.prepare_only) return 0;
-  print_results(o, stage, results_in(o, "adapted", overrides, o.run.resume));
+  print_results(o, stage, results_in(o, "adapted", overrides));
   fmt::print("results: {}\n", o.out.string());
   return 0;
 }

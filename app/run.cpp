@@ -79,9 +79,7 @@ int run_command(int argc, char** argv) {
   if (const auto code = parse(app, argc, argv)) return *code;
 
   const Document document(file, overrides);
-  options.out = out.empty()
-                    ? std::filesystem::path("out") / std::filesystem::absolute(file).parent_path().filename()
-                    : out;
+  options.out = out.empty() ? default_out(file) : out;
   options.progress = stderr;
   resume.apply(options);
   if (is_track_case(document)) return run_track_case(document, options);

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "command_line.h"
 #include "io/files.h"
 
 namespace trackbed {
@@ -29,13 +30,6 @@ struct Answer {
   int code = 0;
   std::string text;  // of both streams
 };
-
-/// For the shell.
-std::string quoted(const std::string& word) {
-  std::string out = "'";
-  for (char c : word) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
-}
 
 Answer ask_shell(const std::string& command) {
   std::FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");

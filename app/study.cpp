@@ -96,6 +96,7 @@ class StudyRun {
     if (!o_.until.empty()) goal_ = goal_of(o_.until);
     for (Member& member : members_of(study_, conditions_)) add(std::move(member));
     check_measures(document);
+    for (std::size_t c = 0; goal_ && c < conditions_.size(); ++c) add_repeats(c);
   }
 
   /// Runs what is not done; returns whether all members succeeded.
@@ -118,6 +119,8 @@ class StudyRun {
     const ForeseenMeasures foreseen(study_, conditions_);
     trackbed::check_measures(document, study_, foreseen);
     if (!goal_) return;
+    if (!has_chance(study_))
+      throw InputError("--repeat-until: nothing in a track case is drawn by chance, one run tells all");
     if (const auto hint = foreseen.hint_for(goal_->measure))
       throw InputError(fmt::format("--repeat-until: no run leaves a measure called {}\n  hint: {}",
                                    goal_->measure, *hint));
@@ -188,19 +191,24 @@ class StudyRun {
     write_tables();
   }
 
-  /// One more seed for a condition all of whose members have ended, unless its interval is narrow enough.
+  /// More seeds for a condition all of whose members have ended, until one is to be run (others may have
+  /// been, by an earlier call) or its interval is narrow enough.
   void add_repeats(std::size_t condition) {
+    while (const auto next = seed_to_add(condition)) add(make_member(study_, conditions_, condition, *next));
+  }
+
+  std::optional<std::uint64_t> seed_to_add(std::size_t condition) const {
     int repeats = 0;
     std::uint64_t last = 0;
     for (std::size_t m = 0; m < members_.size(); ++m) {
       if (members_[m].condition != condition) continue;
-      if (outcomes_[m].status == MemberStatus::waiting) return;
+      if (outcomes_[m].status == MemberStatus::waiting) return std::nullopt;
       last = std::max(last, members_[m].seed);
       ++repeats;
     }
     const Estimate e = estimate_of(goal_->measure, condition, members_, outcomes_);
-    if (repeats < o_.most_repeats && !(e.relative_width() < goal_->width))
-      add(make_member(study_, conditions_, condition, last + 1));
+    if (repeats >= o_.most_repeats || e.relative_width() < goal_->width) return std::nullopt;
+    return last + 1;
   }
 
   void write_tables() const {
@@ -313,11 +321,12 @@ int study_command(int argc, char** argv) {
   app.add_flag("--retry", o.retry, "run members again that failed");
   if (const auto code = parse(app, argc, argv)) return *code;
   if (!o.sbatch.empty() && o.on != "slurm") throw InputError("--sbatch is for --on slurm only");
-  if (o.out.empty()) o.out = fs::path("out") / fs::absolute(o.file).parent_path().filename();
+  if (o.out.empty()) o.out = default_out(o.file);
 
   const Document document(o.file);
   StudyInput study;
   document.read(study);
+  study.base = fs::absolute(study.base);  // as members are called with it: their inputs name files from there
   add_changes(changes, document, study);
   if (repeats) study.repeats = *repeats;
   make_folder(o.out);

@@ -17,6 +17,11 @@ std::vector<Result> measured(const Simulation& sim) {
   return results;
 }
 
+/// Of the state, and of the shapes that it names: their files may have changed while the input stayed.
+std::uint64_t fingerprint_of(const Simulation& sim) {
+  return hash(sim.state) ^ hash_of_shapes(sim.model);
+}
+
 /// Stones are added and removed only by stages that say so in their results.
 void check_count(const Simulation& sim, int before, const std::vector<Result>& results) {
   double expected = before;
@@ -135,7 +140,7 @@ void Course::look_up() {
 void Course::leave_checkpoint(std::size_t stage) {
   Archive a;
   std::string input = summary_.input.dump();
-  std::uint64_t at = stage, fingerprint = hash(sim_.state);
+  std::uint64_t at = stage, fingerprint = fingerprint_of(sim_);
   double wall = summary_.wall + watch_.seconds(), stage_wall = stage_wall_ + stage_watch_.seconds();
   a(input, at, fingerprint, wall, stage_wall);
   archive(a);
@@ -154,9 +159,11 @@ void Course::take_up(std::string bytes) {
   a(at, fingerprint, summary_.wall, stage_wall_);
   stage_ = at;
   archive(a);
-  if (hash(sim_.state) != fingerprint)
+  if (fingerprint_of(sim_) != fingerprint)
     throw RunError(
-        fmt::format("{}: the checkpoint there is of another version of this program", options_.out.string()));
+        fmt::format("{}: the checkpoint there is of another version of this program, or a file of shapes has "
+                    "changed since",
+                    options_.out.string()));
   find_contacts(sim_.model, sim_.state, sim_.work);
 }
 

@@ -84,6 +84,7 @@ Summary run_recorded(Simulation& sim, std::vector<NamedStage>& stages, const Cas
   summary.input = echo(experiment);
   summary.force_limits = experiment.record.force_bins;
   make_folder(options.out);
+  std::filesystem::remove(options.out / "summary.json");  // of another run: what follows is not its
   Recorder recorder(sim, experiment.record, options.out);
   run_stages(sim, stages, recorder, options, summary);
   summary.wall += setting_up;

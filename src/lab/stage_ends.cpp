@@ -15,7 +15,23 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 namespace {
 
-/// Of stones and walls, whose files may have changed while their names stayed.
+/// Another build may round otherwise.
+std::uint64_t hash_of_program() {
+  Hash hash;
+  hash.add(std::string_view(read_file("/proc/self/exe")));
+  return hash.value();
+}
+
+/// Whether it names a file whose content the input does not tell.
+bool names_a_file(const Json& part) {
+  if (part.is_object())
+    for (const char* key : {"file", "levels_from"})
+      if (part.contains(key)) return true;
+  return part.is_structured() && std::ranges::any_of(part, names_a_file);
+}
+
+}  // namespace
+
 std::uint64_t hash_of_shapes(const Model& model) {
   Hash hash;
   const auto add = [&](const Vec3& v) {
@@ -33,23 +49,6 @@ std::uint64_t hash_of_shapes(const Model& model) {
     for (const Vec3& v : wall.shape.mesh.vertices) add(v);
   return hash.value();
 }
-
-/// Another build may round otherwise.
-std::uint64_t hash_of_program() {
-  Hash hash;
-  hash.add(std::string_view(read_file("/proc/self/exe")));
-  return hash.value();
-}
-
-/// Whether it names a file whose content the input does not tell.
-bool names_a_file(const Json& part) {
-  if (part.is_object())
-    for (const char* key : {"file", "levels_from"})
-      if (part.contains(key)) return true;
-  return part.is_structured() && std::ranges::any_of(part, names_a_file);
-}
-
-}  // namespace
 
 StageEnds::StageEnds(fs::path folder, const Json& input, const Model& model)
     : folder_(std::move(folder)), input_(input) {

@@ -11,6 +11,9 @@
 
 namespace trackbed {
 
+/// Of stones and walls, whose files may have changed while their names stayed.
+std::uint64_t hash_of_shapes(const Model& model);
+
 class StageEnds {
  public:
   /// In `folder`; empty: nothing is kept. `input` is the resolved case, whose record.keep names the stages.

@@ -131,6 +131,13 @@ TEST_F(Apss, StoppedAndTakenUpAgainItEndsWithTheSameBits) {
   EXPECT_NE(results("stopped")["state_hash"], results("whole")["state_hash"]);
 }
 
+// The stage that decides is recorded whatever the case records.
+TEST_F(Apss, ACaseThatRecordsOtherStagesIsAdaptedAllTheSame) {
+  EXPECT_EQ(apss("out", "--prepare-only --set 'record.stages=[\"settle\"]' --set 'record.keep=[\"press\"]'"),
+            0)
+      << told("out");
+}
+
 TEST_F(Apss, AWrongTimeOrStageIsRefused) {
   EXPECT_EQ(apss("out", "--checkpoint-every '5 mm'"), 2);
   EXPECT_NE(told("out").find("--checkpoint-every 5 mm"), std::string::npos) << told("out");

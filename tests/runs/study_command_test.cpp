@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <thread>
 
 #include "base/rng.h"
@@ -161,9 +162,25 @@ TEST_F(StudyCommand, AddsSeedsUntilTheIntervalIsNarrow) {
   EXPECT_EQ(run("out", {"--repeat-until", "contacts < 0.1 %", "--most-repeats", "5"}), 0) << messages();
   EXPECT_TRUE(fs::exists(folder_.path / "out/members/friction_0.5-seed-5/summary.json"));
   EXPECT_FALSE(fs::exists(folder_.path / "out/members/friction_0.5-seed-6"));
+  // The same command goes on with the seeds that it had added.
+  fs::remove_all(folder_.path / "out/members/friction_0.5-seed-5");
+  EXPECT_EQ(run("out", {"--repeat-until", "contacts < 0.1 %", "--most-repeats", "5"}), 0) << messages();
+  EXPECT_TRUE(fs::exists(folder_.path / "out/members/friction_0.5-seed-5/summary.json"));
   EXPECT_EQ(run("wide", {"--repeat-until", "contacts < 100 %"}), 0) << messages();
   EXPECT_FALSE(fs::exists(folder_.path / "wide/members/friction_0.5-seed-4"));
   EXPECT_EQ(run("wrong", {"--repeat-until", "contacts"}), 2);
+}
+
+// Members are called with the whole path of the case; files that it names lie beside it all the same.
+TEST_F(StudyCommand, MayBeNamedFromWhereOneStands) {
+  fs::copy_file(fs::path(TRACKBED_ROOT) / "tests/input/case/inward.obj", folder_.path / "cube.obj");
+  write_file(folder_.path / "case.toml",
+             std::string(balls_in_a_box) + "\n[regions.cube]\nkind = \"mesh\"\nfile = \"cube.obj\"\n");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path);
+  const int code = StudyProcess(TRACKBED_PROGRAM, "study.toml", "out", {"--repeats", "1"}).wait();
+  fs::current_path(before);
+  EXPECT_EQ(code, 0) << messages();
 }
 
 TEST_F(StudyCommand, ChangesTheCaseInAllMembersButNotWhatTheStudyChanges) {

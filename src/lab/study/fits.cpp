@@ -24,6 +24,10 @@ struct Quantity {
   std::string unit;
 };
 
+bool has_name(const Json& element, const std::string& name) {
+  return element.is_object() && element.value("name", "") == name;
+}
+
 /// The value at a dotted key of a resolved input; elements of lists are found by their names or numbers.
 const Json* at(const Json& input, const std::string& key) {
   const Json* node = &input;
@@ -34,7 +38,7 @@ const Json* at(const Json& input, const std::string& key) {
     const Json* next = nullptr;
     if (node->is_object() && node->contains(part)) next = &(*node)[part];
     for (std::size_t k = 0; node->is_array() && k < node->size(); ++k)
-      if (part == std::to_string(k) || (*node)[k].value("name", "") == part) next = &(*node)[k];
+      if (part == std::to_string(k) || has_name((*node)[k], part)) next = &(*node)[k];
     if (!next) return nullptr;
     node = next;
   }

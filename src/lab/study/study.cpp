@@ -39,7 +39,8 @@ void declare(Fields& f, StudyInput& in) {
   f.text(required("title"), in.title, "what the study is about");
   f.path(required("case"), in.base, "the case file that all members start from");
   f.texts("set", in.set, "changes of the case in all members, KEY=VALUE as for --set");
-  f.integer("repeats", in.repeats, {.at_least = 1, .at_most = 100000}, "seeds of each condition");
+  f.integer("repeats", in.repeats, {.at_least = 1, .at_most = 100000},
+            "seeds of each condition; a track case, in which nothing is drawn by chance, has one");
   f.integer("first_seed", in.first_seed, {}, "seeds are counted up from here");
   f.texts(
       "measures", in.measures,
@@ -154,6 +155,10 @@ nlohmann::ordered_json input_of(const std::filesystem::path& file, const std::ve
   return echo(input);
 }
 
+bool has_chance(const StudyInput& study) {
+  return !is_track_case(Document(study.base));
+}
+
 Member make_member(const StudyInput& study, const std::vector<Condition>& conditions, std::size_t condition,
                    std::uint64_t seed) {
   Member member;
@@ -162,7 +167,7 @@ Member make_member(const StudyInput& study, const std::vector<Condition>& condit
   member.name = fmt::format("{}-seed-{}", plain(conditions[condition].name), seed);
   member.set = changes_of(study, conditions[condition]);
   try {
-    if (is_track_case(Document(study.base))) {  // nothing in it is drawn by chance
+    if (!has_chance(study)) {
       member.input = input_of<TrackCaseInput>(study.base, member.set);
       return member;
     }
@@ -182,7 +187,8 @@ std::string fingerprint(const Member& member) {
 
 std::vector<Member> members_of(const StudyInput& study, const std::vector<Condition>& conditions) {
   std::vector<Member> members;
-  for (int k = 0; k < study.repeats; ++k)
+  const int repeats = has_chance(study) ? study.repeats : 1;
+  for (int k = 0; k < repeats; ++k)
     for (std::size_t c = 0; c < conditions.size(); ++c)
       members.push_back(make_member(study, conditions, c, study.first_seed + static_cast<std::uint64_t>(k)));
   return members;

@@ -75,8 +75,11 @@ struct Member {
 /// Of the input: two members with the same one give the same results.
 std::string fingerprint(const Member& member);
 
-/// The members of all conditions with seeds first_seed to first_seed + repeats - 1. Every case is read and
-/// checked: throws InputError that names the member.
+/// Whether seeds change anything: not in a track case.
+bool has_chance(const StudyInput& study);
+
+/// The members of all conditions with seeds first_seed to first_seed + repeats - 1, or one each where nothing
+/// is drawn by chance. Every case is read and checked: throws InputError that names the member.
 std::vector<Member> members_of(const StudyInput& study, const std::vector<Condition>& conditions);
 
 /// The member of one more seed.

@@ -266,7 +266,7 @@ TEST_F(Study, AFailureIsKeptWithItsCause) {
 
 TEST_F(Study, TablesHoldInputsMeasuresAndTheirSpread) {
   const auto all = conditions("repeats = 3\n[[sweep]]\nkey = \"stages.fill.porosity\"\nvalues = [\"0.5\"]\n");
-  const auto members = members_of(study_, all);
+  auto members = members_of(study_, all);
   std::vector<Outcome> outcomes;
   for (std::size_t k = 0; k < members.size(); ++k) {
     const auto out = folder_.path / members[k].name;
@@ -297,7 +297,11 @@ TEST_F(Study, TablesHoldInputsMeasuresAndTheirSpread) {
   EXPECT_NE(read_file(folder_.path / "table.csv").find("porosity 0.5,0.5,load.porosity,-,2,0.3,0,0.3,0.3\n"),
             std::string::npos);
 
+  // Unknown while one is missing: it may be what only that one leaves.
   study_.measures = {"porosity", "load.setlement"};
+  EXPECT_NO_THROW(write_table(study_, all, members, outcomes, folder_.path / "table.csv"));
+  members.pop_back();
+  outcomes.pop_back();
   EXPECT_THROW(write_table(study_, all, members, outcomes, folder_.path / "table.csv"), InputError);
 }
 
