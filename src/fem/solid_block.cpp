@@ -99,7 +99,8 @@ class BlockModel {
         for (int i : {0, x_.parts}) free_.hold(node(i, j, 0), 2);
       for (int j = 0; j < y_.nodes(); ++j) free_.hold(node(0, j, 0), 0);
       for (int i : {0, x_.parts})
-        free_.hold(node(i, y_.parts / 2, 0), 1);  // it neither drifts nor turns about z
+        if (!block_.symmetric)
+          free_.hold(node(i, y_.parts / 2, 0), 1);  // it neither drifts nor turns about z
     }
     free_.number();
   }

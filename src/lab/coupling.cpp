@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
 
 #include "base/error.h"
 #include "io/csv.h"
@@ -36,7 +38,7 @@ class Bed {
     std::vector<NamedStage> stages = stages_of(bed);
     first_ = first_pressing(stages);
     stages.erase(stages.begin() + static_cast<std::ptrdiff_t>(first_), stages.end());
-    if (!stages.empty()) carry(sim_, stages, bed, options_.out / "bed");
+    if (!stages.empty()) carry(sim_, stages, bed, options_.out / "bed", options_);
   }
 
   PressHistory press(double force, const fs::path& out) const {
@@ -44,7 +46,9 @@ class Bed {
     std::vector<NamedStage> stages = stages_of(bed);
     stages.erase(stages.begin(), stages.begin() + static_cast<std::ptrdiff_t>(first_));
     Simulation sim = sim_;
-    carry(sim, stages, bed, out);
+    RunOptions options = options_;
+    options.keep.clear();  // the whole series is read: nothing is taken over from another run
+    carry(sim, stages, bed, out, options);
     const PressHistory history = of_whole_sleeper(read_series(out / "series.csv"), in_.share, in_.below);
     check_curve(history, force * in_.share, out);
     return history;
@@ -60,9 +64,8 @@ class Bed {
                                     stages.begin());
   }
 
-  void carry(Simulation& sim, std::vector<NamedStage>& stages, const CaseInput& bed,
-             const fs::path& out) const {
-    RunOptions options = options_;
+  static void carry(Simulation& sim, std::vector<NamedStage>& stages, const CaseInput& bed,
+                    const fs::path& out, RunOptions options) {
     options.out = out;
     run_recorded(sim, stages, bed, options);
   }
@@ -128,12 +131,19 @@ void check_bed(const Document& document, const CoupledBedInput& in, const CaseIn
 }
 
 void check_sleepers(const Document& document, const CouplingInput& in, const TrackLayoutInput& track) {
+  std::set<int> taken;
+  for (const OwnSupportInput& support : track.supports)
+    for (const int number : numbers_of(support)) taken.insert(number);
   for (std::size_t k = 0; k < in.sleepers.size(); ++k)
-    for (const int number : numbers_of(in.sleepers[k]))
+    for (const int number : numbers_of(in.sleepers[k])) {
+      const std::string here = fmt::format("sleepers.{}", k);
       if (support_of_sleeper(track, number) < 0)
-        document.fail(fmt::format("sleepers.{}", k),
-                      fmt::format("there is no sleeper {} on an embankment", number),
+        document.fail(here, fmt::format("there is no sleeper {} on an embankment", number),
                       "sleepers are counted from the bridge: -1, -2 before it, 1, 2 behind it");
+      if (!taken.insert(number).second)
+        document.fail(here, fmt::format("sleeper {} has two supports of its own", number),
+                      "let the ranges not overlap, nor those of the track case");
+    }
   if (in.sleepers.empty())
     document.fail("title", "no sleepers lie on the bed", "add a table [[sleepers]] with from and to");
 }
@@ -249,7 +259,9 @@ std::vector<CouplingRound> couple(double tolerance, int rounds, double reach, co
     worst = 0;
     for (std::size_t range = 0; range < peaks.size(); ++range) {
       const double load = loads[range].value(), peak = std::ranges::max(next[range]);
-      const double change = std::max(change_of(peaks[range], next[range]), std::abs(load / peak - 1));
+      const double change = peak > 0
+                                ? std::max(change_of(peaks[range], next[range]), std::abs(load / peak - 1))
+                                : std::numeric_limits<double>::infinity();  // sleepers hang: nothing agrees
       all.push_back({round, range, reach * load, support_curve(beds[range]), peak, change});
       if (told) told(all.back());
       loads[range].found(peak);

@@ -72,6 +72,16 @@ TEST(Couple, SleepersThatComeToHangAreTold) {
   }
 }
 
+// Two passages over hanging sleepers are alike, but agree with no load.
+TEST(Couple, SleepersThatHangTwiceDoNotAgree) {
+  const std::vector<double> peaks{100e3, 150e3, 0, 0, 0, 0};  // by rounds
+  const auto passage = [&](const std::vector<PressHistory>&, int round) {
+    return std::vector<std::vector<double>>{{peaks[static_cast<std::size_t>(round)]}};
+  };
+  const auto press = [](std::size_t, double force, int) { return line(2e8, force, 1e-3); };
+  EXPECT_THROW(couple(0.01, 5, 1, passage, press), RunError);
+}
+
 TEST(Couple, WhatDoesNotSettleDownFails) {
   const auto passage = [](const std::vector<PressHistory>&, int round) {
     return std::vector<std::vector<double>>{{round % 2 == 0 ? 80e3 : 90e3}};

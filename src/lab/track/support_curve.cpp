@@ -111,6 +111,7 @@ SupportCurve support_curve(const PressHistory& h, int points) {
   const double zero = curve.sinking.front();
   curve.settlement = rise.from > first_touch(h) ? zero - first_zero(h, curve.unloading) : 0;
   for (double& sinking : curve.sinking) sinking -= zero;
+  curve.unloading = std::max(curve.unloading, steepest(curve));  // differences were rounded anew
   return curve;
 }
 

@@ -150,6 +150,26 @@ void check_step(const Document& document, double step, const fem::Soil& soil) {
                   std::floor(1e6 * longest) / 1e3));
 }
 
+/// Of sleepers that series.csv is to show.
+void check_recorded(const Document& document, const TrackCaseInput& in) {
+  const std::vector<int> n = sleepers_of(in.track);
+  const int before = n[0] + n[1], behind = n[3] + n[4];
+  for (const double number : in.record.sleepers)
+    if (number != std::round(number) || number == 0 || number < -before || number > behind)
+      document.fail(
+          "record.sleepers", fmt::format("there is no sleeper {:g}", number),
+          fmt::format("sleepers are counted from the bridge: -{} to -1 before it, 1 to {} behind it", before,
+                      behind));
+}
+
+/// Of rails that would be fastened beside a slab of solids.
+void check_slab(const Document& document, const TrackLayoutInput& t) {
+  const double needed = t.sleeper.rail_distance + t.sleeper.seat;
+  if (t.bridge > 0 && t.slab.concrete.model == "solid" && t.slab.width < needed)
+    document.fail("track.slab.width", "the rails' seats lie beyond the slab",
+                  fmt::format("give {:g} m or more", needed));
+}
+
 double train_length(const TrackCaseInput& in) {
   return in.train.vehicle.bogie_distance + in.train.vehicle.wheelbase;
 }
@@ -226,8 +246,10 @@ void check_track(const Document& document, const TrackCaseInput& in) {
                                 std::ceil(bays) * in.track.spacing));
   }
   const Journey journey = journey_of(in);
-  const double first = train_length(in) - lengths[0];
-  const double last = lengths[1] + lengths[2] + lengths[3] + lengths[4];
+  // Rails begin and end half a spacing from the sleepers, which may be moved to the nodes of the ground.
+  const double moved = first_sleeper(in.track) - in.track.spacing / 2;
+  const double first = train_length(in) - lengths[0] + std::max(0.0, moved);
+  const double last = lengths[1] + lengths[2] + lengths[3] + lengths[4] + std::min(0.0, moved);
   const std::string where = document.has("train") ? "train" : "track";
   if (journey.start + 1e-9 >= journey.end || first + 2 * clearance >= last)
     document.fail(
@@ -236,13 +258,19 @@ void check_track(const Document& document, const TrackCaseInput& in) {
                     train_length(in)));
   if (journey.start < first)
     document.fail("train.start", "the last wheel would stand before the track",
-                  fmt::format("start at {} m or later", first));
+                  fmt::format("start at {:.6g} m or later", first));
   if (journey.end > last)
     document.fail("train.end", "the first wheel would leave the track",
-                  fmt::format("end at {} m or earlier", last));
+                  fmt::format("end at {:.6g} m or earlier", last));
   check_own_supports(document, in.track);
+  check_recorded(document, in);
+  check_slab(document, in.track);
   const bool has_ground = in.track.ground.model != "springs" && !in.track.support;
   if (!has_ground) return;
+  if (lengths[2] == 0 && lengths[1] > 0 && lengths[3] > 0)
+    document.fail("track.bridge",
+                  "without a bridge the ground would be cut in two where the embankments meet",
+                  "make the approach as long as both and give departure = \"0 m\"");
   for (const TrackZone zone : {TrackZone::approach, TrackZone::departure}) {
     if (sleepers_of(in.track)[static_cast<std::size_t>(zone)] == 0) continue;
     std::optional<fem::Soil> soil;

@@ -25,6 +25,22 @@ std::vector<double> usual_sleepers() {
   return numbers;
 }
 
+/// Those beyond lie on springs of their own.
+bool is_on_embankment(const SleeperRecord& s) {
+  return s.zone == static_cast<int>(TrackZone::approach) || s.zone == static_cast<int>(TrackZone::departure);
+}
+
+/// Largest forces of the sleepers of a zone that lie so far before the bridge that it tells nothing there.
+std::vector<double> open_track(const std::vector<SleeperRecord>& sleepers, TrackZone zone) {
+  std::vector<double> peaks;
+  const auto first = std::ranges::find(sleepers, -1, &SleeperRecord::number);
+  if (first == sleepers.end()) return peaks;
+  for (const SleeperRecord& s : sleepers)
+    if (s.zone == static_cast<int>(zone) && first->x - s.x >= open_from && first->x - s.x <= open_to)
+      peaks.push_back(s.peak_force);
+  return peaks;
+}
+
 }  // namespace
 
 TrackRecorder::TrackRecorder(const fem::TrackModel& track, const TrackCaseInput& in,
@@ -47,7 +63,7 @@ TrackRecorder::TrackRecorder(const fem::TrackModel& track, const TrackCaseInput&
                               {"wheel_force_3", Dimension::force}, {"wheel_force_4", Dimension::force}};
   for (const double number : in.record.sleepers.empty() ? usual_sleepers() : in.record.sleepers) {
     const auto found = std::ranges::find(sleepers_, static_cast<int>(number), &SleeperRecord::number);
-    if (number == 0 || found == sleepers_.end()) continue;
+    if (found == sleepers_.end()) continue;  // of the usual ones a short track lacks some
     shown_.push_back(static_cast<std::size_t>(found - sleepers_.begin()));
     columns.push_back({fmt::format("sleeper_{:+d}.force", found->number), Dimension::force});
     columns.push_back({fmt::format("sleeper_{:+d}.displacement", found->number), Dimension::length});
@@ -164,13 +180,8 @@ std::vector<Result> TrackRecorder::close(const fem::TrackModel& track) {
 }
 
 std::vector<Result> measures_of(const std::vector<SleeperRecord>& sleepers) {
-  std::vector<double> open;
-  const SleeperRecord* bridge = nullptr;
-  for (const SleeperRecord& s : sleepers)
-    if (s.number == -1) bridge = &s;
-  for (const SleeperRecord& s : sleepers)
-    if (bridge && s.number < 0 && bridge->x - s.x >= open_from && bridge->x - s.x <= open_to)
-      open.push_back(s.peak_force);
+  std::vector<double> open = open_track(sleepers, TrackZone::approach);
+  if (open.empty()) open = open_track(sleepers, TrackZone::lead_in);
   double middle = nothing, spread = nothing;
   if (!open.empty()) {
     std::ranges::sort(open);
@@ -184,7 +195,7 @@ std::vector<Result> measures_of(const std::vector<SleeperRecord>& sleepers) {
     double hanging = 0, gap = 0, raised_from = nothing, raised_to = nothing, acceleration = 0;
     for (int n = 1; n <= beside; ++n) {
       const auto s = std::ranges::find(sleepers, side * n, &SleeperRecord::number);
-      if (s == sleepers.end()) continue;
+      if (s == sleepers.end() || !is_on_embankment(*s)) continue;
       if (!most || s->peak_force > most->peak_force) most = &*s;
       if (s->rest_gap > touches) ++hanging;
       gap = std::max(gap, s->rest_gap);

@@ -87,6 +87,7 @@ Summary run_track(const Document& document, const TrackCaseInput& in, const RunO
   summary.threads = use_threads(options.threads);
   summary.input = echo(in);
   make_folder(options.out);
+  std::filesystem::remove(options.out / "summary.json");  // of another run: what follows is not its
   std::FILE* const out = options.quiet ? nullptr : options.progress;
   fem::TrackModel track = make_track(in, options.keep, [&](TrackZone zone) {
     Progress(out).say(fmt::format(

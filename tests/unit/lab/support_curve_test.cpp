@@ -39,6 +39,16 @@ TEST(SupportCurve, OneLoadOfALine) {
   EXPECT_NEAR(half.unloading, 1e8, 100);
 }
 
+// A rise that begins under a small force far down is led back to none by a piece as steep as unloading: but
+// for rounding, which the law must allow.
+TEST(SupportCurve, ARiseFromASmallForceMakesALaw) {
+  for (const double start : {0.1, 1.0, 5.0, 10.0, 77.0})
+    for (const double deep : {1e-3, 5e-3, 8e-3}) {
+      const PressHistory h{{deep, deep + 1e-3, deep + 0.8e-3}, {start, 50e3, 20e3}};
+      EXPECT_NO_THROW(fem::check(fem::LinkLaw(half_of(support_curve(h))))) << start << " N at " << deep;
+    }
+}
+
 // Each load to 80 kN leaves less: 0.4, 0.2, 0.1 mm; the fourth counts, from 0.7 mm on.
 TEST(SupportCurve, TheLastOfManyLoadsCountsAndWhatWasSunkBeforeIsSettlement) {
   PressHistory h;
