@@ -104,14 +104,15 @@ SupportCurve support_curve(const PressHistory& h, int points) {
   }
   if (curve.sinking.size() < 2) throw InputError("the sleeper does not sink while the force on it grows");
   curve.unloading = std::max(unloading_slope(h, rise.to), steepest(curve));
+  // Led back to no force: counted from there, so that this piece is as steep as unloading to the last bit but
+  // one.
+  const double begin = curve.sinking.front(), before = start / curve.unloading;
+  for (double& sinking : curve.sinking) sinking = (sinking - begin) + before;
   if (start > 0) {
-    curve.sinking.insert(curve.sinking.begin(), curve.sinking.front() - start / curve.unloading);
+    curve.sinking.insert(curve.sinking.begin(), 0.0);
     curve.force.insert(curve.force.begin(), 0.0);
   }
-  const double zero = curve.sinking.front();
-  curve.settlement = rise.from > first_touch(h) ? zero - first_zero(h, curve.unloading) : 0;
-  for (double& sinking : curve.sinking) sinking -= zero;
-  curve.unloading = std::max(curve.unloading, steepest(curve));  // differences were rounded anew
+  curve.settlement = rise.from > first_touch(h) ? begin - before - first_zero(h, curve.unloading) : 0;
   return curve;
 }
 
