@@ -45,6 +45,14 @@ normal = [0, 0, -1]
 material = "stone"
 )";
 
+/// Two stages of a kind.
+std::string twice(const std::string& kind) {
+  std::string stages;
+  for (const char* name : {"first", "second"})
+    stages += "[[stages]]\nkind = \"" + kind + "\"\nname = \"" + name + "\"\nporosity = 0.8\n";
+  return stages;
+}
+
 struct Filled {
   Simulation sim;
   std::vector<Result> found;  // by the last stage
@@ -69,32 +77,14 @@ struct Filled {
 };
 
 TEST(fill, twice_leaves_no_overlap) {
-  const Filled bed(R"(
-[[stages]]
-kind = "fill"
-name = "first"
-porosity = 0.8
-[[stages]]
-kind = "fill"
-name = "second"
-porosity = 0.8
-)");
+  const Filled bed(twice("fill"));
   ASSERT_GT(bed.sim.state.clumps.size(), 100);
   EXPECT_GT(bed.least_gap(), 0);
 }
 
 // Had both the same random numbers, stones of the second would lie in those of the first.
 TEST(scatter, twice_has_other_places_the_second_time) {
-  const Filled bed(lid + R"(
-[[stages]]
-kind = "scatter"
-name = "first"
-porosity = 0.8
-[[stages]]
-kind = "scatter"
-name = "second"
-porosity = 0.8
-)");
+  const Filled bed(lid + twice("scatter"));
   ASSERT_GT(bed.sim.state.clumps.size(), 100);
   EXPECT_GT(bed.least_gap(), -0.005);
 }
